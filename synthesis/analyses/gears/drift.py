@@ -28,7 +28,7 @@ class Drift(Answer):
     seconds_per_day: float = Field(description="Seconds per day; positive if the output is fast.")
     days_per_second: float | None = Field(description="Days until the error is one second; null if it never is.")
     opposite: bool | None = optional_field(
-        "True if ratio and required ratio differ in sign: the train turns the other way, or about axes that are not "
+        "Whether ratio and required ratio differ in sign: the train turns the other way, or about axes that are not "
         "parallel. The other fields then compare magnitudes."
     )
 

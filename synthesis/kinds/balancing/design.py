@@ -30,7 +30,7 @@ class RotorCorrection(Answer):
     unbalance: Unbalance = Field(description="Mass times radius.")
     mass: Mass | None = optional_field("Omitted if no correction is given.")
     radius: Length | None = optional_field("Omitted if no correction is given.")
-    removed: bool = Field(description="True if the mass is removed.")
+    removed: bool = Field(description="Whether the mass is removed.")
 
 
 class RotorMechanism(Answer):
@@ -67,7 +67,7 @@ class RotorMetrics(Answer):
 
     residual_unbalance: Unbalance = Field(description="Sum of the residual unbalances of the planes.")
     bound: Unbalance = Field(description="Lower bound for any choice of any number of the given places.")
-    optimal: bool = Field(description="True if the residual is proven minimal for this number of places in each plane.")
+    optimal: bool = Field(description="Whether the residual is proven minimal for this number of places in each plane.")
     places: int = Field(description="Number of masses or holes in all planes.")
     initial_unbalance: Unbalance = Field(description="Vector sum of the unbalances before the correction.")
     residual_couple: Torque | None = optional_field(

@@ -79,7 +79,7 @@ class GearTrainMetrics(Answer):
     largest_stage_ratio: float = Field(
         description="Greatest ratio of larger over smaller gear of any stage; for a worm stage gear teeth over threads."
     )
-    hunting_tooth: bool = Field(description="True if the teeth of every mesh have no common divisor.")
+    hunting_tooth: bool = Field(description="Whether the teeth of every mesh have no common divisor.")
     centre_distances: list[Length] = Field(description="Distance of the shafts of each stage, with idlers in line.")
     meshes: list[MeshGeometry]
     strength: list[PairStrength] | None = optional_field("Stresses of every mesh in order, under the given power.")

@@ -150,7 +150,7 @@ class IndexingMetrics(Answer):
     peak_pin_force: Force
     wall: Length = Field(description="Minimum thickness between a slot and a locking arc.")
     web: Length = Field(description="Minimum distance between neighbouring slots; negative if they meet.")
-    undercut: bool = Field(description="True if slots run into one another or into the bore.")
+    undercut: bool = Field(description="Whether slots run into one another or into the bore.")
     locking_angle: Angle = Field(description="Crank angle over which the disc fills a locking arc.")
     play: Angle = Field(
         description="Angle by which the locked wheel can be turned in either direction, in the middle of a rest."

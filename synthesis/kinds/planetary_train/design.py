@@ -49,7 +49,7 @@ class MeshContact(Answer):
     contact_ratio: float
     centre_distance: Length
     fillet_interference: bool = Field(
-        description="True if contact leaves the involute that rack and cutter produce: into a fillet or, for an "
+        description="Whether contact leaves the involute that rack and cutter produce: into a fillet or, for an "
         "undercut gear, into the region without flank."
     )
     tip_depth: Length = Field(
@@ -73,7 +73,7 @@ class PlanetaryMetrics(Answer):
     efficiency: float = Field(
         description="Efficiency with the given efficiency of each mesh; 0 if the train is self-locking."
     )
-    self_locking: bool = Field(description="True if no input torque can drive the output.")
+    self_locking: bool = Field(description="Whether no input torque can drive the output.")
     rolling_power: float = Field(description="Largest power of a mesh relative to its carrier, without losses.")
     branch_power: float = Field(description="Largest power between a row and a member, without losses.")
     circulating_power: bool = Field(description="Warning: a member carries more power than the input.")
@@ -110,7 +110,7 @@ class PlanetarySearch(Search):
 
     judged: int | None = optional_field("With `strength`: number of trains judged, in the order of the ranking.")
     every_judged: bool | None = optional_field(
-        "True if all trains within the tolerance were judged, so that `ties` and `pareto` refer to all trains that "
+        "Whether all trains within the tolerance were judged, so that `ties` and `pareto` refer to all trains that "
         "carry "
         "the power; otherwise they refer to the judged ones only."
     )

@@ -53,7 +53,7 @@ class SpringMetrics(Answer):
     bound: float | None = optional_field("Lower bound for all springs within the limits. Omitted if it is unknown.")
     gap: float | None = optional_field("Excess of the value over the bound, as a share of the value.")
     exact: bool = Field(
-        description="True if the drive vanishes, to rounding; at rest with steady loads the energy is then constant."
+        description="Whether the drive vanishes, to rounding; at rest with steady loads the energy is then constant."
     )
     drive: Torque = Field(description="Peak drive with the springs.")
     unbalanced_drive: Torque = Field(description="Peak drive without springs.")

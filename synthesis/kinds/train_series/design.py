@@ -34,7 +34,7 @@ class TrainSeriesMetrics(Answer):
         description="Efficiency of all units, with the given efficiency of each mesh; null with ordinary gears, whose "
         "losses are reported by their analysis."
     )
-    self_locking: bool = Field(description="True if no input torque can drive the output.")
+    self_locking: bool = Field(description="Whether no input torque can drive the output.")
     units: list[PlanetaryMetrics | GearTrainMetrics]
 
 

@@ -35,8 +35,8 @@ def test_who_imports_waits_for_another_import(work) -> None:
 
 def test_who_only_offers_files_loads_no_drawing_library() -> None:
     offered = (
-        "import sys; from service.render import forms; from synthesis.registry import KINDS; "
-        "assert all(forms(one) for kind in KINDS.values() for one in kind.mechanisms); "
+        "import sys; from service.render import list_forms; from synthesis.registry import KINDS; "
+        "assert all(list_forms(one) for kind in KINDS.values() for one in kind.mechanisms); "
         "print(sorted({'ezdxf', 'PIL', 'numba', 'scipy'} & set(sys.modules)))"
     )
     told = subprocess.run([sys.executable, "-c", offered], capture_output=True, text=True, check=True, timeout=100.0)

@@ -252,7 +252,7 @@ def test_what_is_next_to_nothing_gives_no_curve_and_what_is_closed_stays_around_
         assert len(disc["points"]) >= 3
         assert shapely.Polygon(chords(disc)).area > 80
         reasons = {one["id"]: one["reason"] for one in answer["left_out"]}
-        assert "fro" in reasons["fro"]
+        assert "encloses no area" in reasons["fro"]
         assert "gap" in reasons["dot"]
 
 

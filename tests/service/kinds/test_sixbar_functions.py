@@ -192,7 +192,7 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars,
     monkeypatch.setattr(type_selection, "rank_by_error", lambda _, designs: sorted(designs, key=_error))
     monkeypatch.setattr(type_selection, "get_error", lambda _, design: _error(design))
     limits = SimpleNamespace(min_transmission_angle=None)
-    problem = SimpleNamespace(max_designs=most, constraints=limits, listed_later=later)
+    problem = SimpleNamespace(max_designs=most, constraints=limits, is_listed_later=later)
     results = [
         FunctionResult.model_construct(
             designs=[

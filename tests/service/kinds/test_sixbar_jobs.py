@@ -182,7 +182,7 @@ def _as_of(sort: str, least: float) -> SimpleNamespace:
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
     monkeypatch.setattr(type_selection, "make_ranking", lambda _: partial(sorted, key=_least, reverse=True))
-    problem = SimpleNamespace(max_designs=most, rank_by="quality", listed_later=False)
+    problem = SimpleNamespace(max_designs=most, rank_by="quality", is_listed_later=False)
     results = [
         MotionResult.model_construct(
             designs=[_as_of("design", angle) for angle in angles],
@@ -474,7 +474,7 @@ def test_positions_without_a_crank_have_no_stephenson_2(client):
     positions = on_a_way(np.random.default_rng(9))
     result = answered(client, positions=positions, mechanisms=["stephenson_2"])["result"]
     assert not result["designs"]
-    assert "none was found that meets these positions" in result["summary"]
+    assert "no crank found meets these positions" in result["summary"]
     # By another route: no descent on the pins of a crank arrives, from wherever it begins.
     at = np.array([complex(p["x"], p["y"]) for p in positions]) / 100.0
     turns = np.exp(1j * np.radians([p["angle"] - positions[0]["angle"] for p in positions]))

@@ -345,7 +345,7 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars,
     monkeypatch.setattr(type_selection, "build_ordering", lambda _: lambda designs: sorted(designs, key=_error))
     limits = SimpleNamespace(min_transmission_angle=None)
     problem = SimpleNamespace(
-        max_designs=most, task_size=100.0, length_unit="mm", constraints=limits, listed_later=False
+        max_designs=most, task_size=100.0, length_unit="mm", constraints=limits, is_listed_later=False
     )
     results = [
         PathResult.model_construct(

@@ -170,7 +170,7 @@ def test_alike_parts_are_one_item_and_every_part_is_in_one() -> None:
 
 
 def test_the_same_design_gives_the_same_files(monkeypatch: Any) -> None:
-    monkeypatch.setattr("service.parts.export.zip_package.installed", lambda: False)
+    monkeypatch.setattr("service.parts.export.zip_package.is_installed", lambda: False)
     whole = assembly("fourbar")
     first, second = (write_package(whole, "laser", "A", whole.motion.sample_inputs(1)[0]) for _ in range(2))
     assert first == second

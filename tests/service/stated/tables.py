@@ -46,6 +46,6 @@ NO_EFFECT = {
 """Fields with which no answer changes, and why."""
 
 ELSEWHERE = frozenset(
-    {"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "DynamicsBlock", "Manufacture", "WeighedLinkage"}
+    {"PathProblem", "SkeletonSpec", "Space", "DesignDynamics", "DynamicsBlock", "Manufacture", "LoadedLinkage"}
 )
 """Models whose fields have rows or tests of their own: paths, skeletons beside dimensions, rooms, masses, shops."""
