@@ -259,7 +259,7 @@ def gauge_is_the_answers(page, motion, design):
         return
     angles = [one for one in motion.get("transmission_angle") or motion["pressure_angle"] if one is not None]
     wanted = design["metrics"].get("min_transmission_angle", min(angles)) if "links" in motion else max(angles)
-    text = page.locator(".gauge svg text", has_text=re.compile("least|most")).text_content()
+    text = page.locator(".gauge svg text", has_text=re.compile("minimum|maximum")).text_content()
     assert text.endswith("°")
     assert numbers(text)[0] == pytest.approx(wanted, abs=0.051), text
 

@@ -208,7 +208,7 @@ def test_without_webgl_the_parts_are_listed(own_studio):
     own_studio.page.add_init_script(NO_WEBGL)
     own_studio.load()
     page = opened(own_studio)
-    assert "does not draw in three dimensions" in page.locator("#built").inner_text()
+    assert "cannot draw in three dimensions" in page.locator("#built").inner_text()
     assert page.locator(CANVAS).count() == 0
     assert ezdxf.readfile(taken(page, "base as DXF").path()).modelspace().query("CIRCLE")
 

@@ -104,7 +104,7 @@ def test_every_use_of_an_outline_its_scale_and_its_undoing(studio):
         '<rect id="all" width="20" height="10"/>'
     )
     import_(page, "shapes.svg", shapes)
-    assert "states no unit, and its numbers are taken as mm" in told(page)
+    assert "states no unit; its numbers are taken as mm" in told(page)
     uses = {
         name: page.get_by_label(name, exact=True).locator("option").evaluate_all("all => all.map(one => one.value)")
         for name in ("bar", "ring", "all")

@@ -114,12 +114,12 @@ def test_a_statement_begins_with_what_was_found(studio):
     assert page.locator("#explore .checks li").count() == 2
     given = stated(page)["positions"]
     drag(page, "#exploring .target:has(text:text-is('B')) .dot", (12, -9))
-    page.get_by_role("button", name="the positions that it takes").click()
+    page.get_by_role("button", name="the positions it reaches").click()
     taken = stated(page)["positions"]
     assert len(taken) == len(given)
     assert taken != given
     assert taken[0]["angle"] == pytest.approx(given[0]["angle"], abs=2.5)
-    page.get_by_role("button", name="path statement").click()
+    page.get_by_role("button", name="path problem with its curve").click()
     begun = stated(page)
     assert begun["kind"] == "path"
     assert begun["closed"] is True
@@ -142,8 +142,8 @@ def test_what_cannot_be_assembled_is_said(studio):
     angle = page.locator("#explore dd")
     until(lambda: angle.count() > 0, 30, "an answer")
     drag(page, pivot, (-30, 0))
-    until(lambda: "Least" in page.inner_text("#explore .facts"), 30, "figures again")
-    assert number(page.locator("#explore dt:has-text('Least') + dd").inner_text()) >= 0.0
+    until(lambda: "Minimum" in page.inner_text("#explore .facts"), 30, "figures again")
+    assert number(page.locator("#explore dt:has-text('Minimum') + dd").inner_text()) >= 0.0
     # The browser itself reports an answer 422, where the linkage was refused on the way.
     assert [text for text in studio.wrong if "422" not in text] == []
     studio.wrong.clear()

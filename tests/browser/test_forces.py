@@ -258,7 +258,7 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     page.click("text=Show the forces")
     page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
     assert "needs a thickness" in page.inner_text('[data-path="/dynamics/links"] > .error')
-    assert "what was stated before" in page.inner_text(".load-editor")
+    assert "the earlier masses and loads" in page.inner_text(".load-editor")
     page.set_viewport_size({"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
     assert violations(page) == []
@@ -299,7 +299,7 @@ def test_a_slide_that_drives_has_a_force_over_its_place(open_studio, server):
     page.focus("#scrub")
     # The design moves beyond what it was verified along; there it has no forces.
     page.keyboard.press("Home")
-    assert "the range that the design was verified along" in page.inner_text(".drive-now .note")
+    assert "the range in which the design was verified" in page.inner_text(".drive-now .note")
     assert page.locator(".force:not([hidden])").count() == 0
     page.locator(".peaks button").first.click()
     assert number(page.inner_text(".drive-now output")) == pytest.approx(extremes["max"], rel=2e-2)

@@ -56,7 +56,7 @@ def test_a_link_has_the_statement_and_a_linkage_that_is_driven_where_it_is_opene
         assert sum(one.endswith("/v1/analyses") for one in asked) >= 2
         assert jobs(other.page) == before
         told = other.page.locator("#numbers").inner_text()
-        assert "this service has found by driving it" in told
+        assert "This service has simulated it" in told
         assert "verified" not in told
         other.screen("link_opened")
         # What is stated then is the reader's own; one step back leads to what was sent.
@@ -83,8 +83,8 @@ def test_what_an_address_claims_is_not_taken_on_trust(chromium, server):
     studio = Studio(chromium, server.url, viewport=dict(DESKTOP))
     page = studio.page
     for address, told in (
-        (f"{server.url}/#statement=AAAA", "cut short, or was changed"),
-        (link_to(server.url, {"problem": motion})[:-9], "cut short, or was changed"),
+        (f"{server.url}/#statement=AAAA", "truncated or was altered"),
+        (link_to(server.url, {"problem": motion})[:-9], "truncated or was altered"),
         (link_to(server.url, "0" * 5_000_000), "longer than 1000000 characters"),
         (
             link_to(server.url, {"problem": {"kind": "constructor"}}),

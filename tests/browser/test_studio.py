@@ -127,7 +127,7 @@ def test_a_stroke_whose_ends_meet_is_a_closed_curve(studio):
     assert len(set(points)) == 24
     steps = [math.dist(one, points[(k + 1) % 24]) for k, one in enumerate(points)]
     assert max(steps) < 1.5 * min(steps), "evenly, from the last to the first too"
-    assert "Closed: the whole curve is matched" in page.inner_text("#sketch")
+    assert "Closed: the designs match the whole curve" in page.inner_text("#sketch")
     page.get_by_role("button", name="Leave it free").click()
     assert not {"closed", "method"} & set(stated(page))
     assert page.get_by_role("button", name="Leave it free").count() == 0
