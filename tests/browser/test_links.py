@@ -90,8 +90,8 @@ def test_what_an_address_claims_is_not_taken_on_trust(chromium, server):
             link_to(server.url, {"problem": {"kind": "constructor"}}),
             "a kind of problem that this service does not know",
         ),
-        (link_to(server.url, {"problem": {**motion, "positions": 7}}), "states positions in a way that"),
-        (link_to(server.url, {"problem": {**motion, "positions": [{"x": {}}]}}), "states positions/0/x in a way"),
+        (link_to(server.url, {"problem": {**motion, "positions": 7}}), "an invalid value at positions"),
+        (link_to(server.url, {"problem": {**motion, "positions": [{"x": {}}]}}), "an invalid value at positions/0/x"),
         (link_to(server.url, {"problem": motion, "mechanism": still}), "The linkage in the address is not shown: "),
     ):
         page.goto("about:blank")
