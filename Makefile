@@ -42,7 +42,7 @@ BESIDES := --ignore tests/browser --ignore tests/cad
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi types lock package docs \
+.PHONY: marks vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi types lock package docs \
     test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
@@ -55,6 +55,10 @@ test: $(STAMP)
 	@$(MAKE) --no-print-directory -j2 check suite
 
 suite: $(STAMP)
+	$(BIN)/pytest -m "$(APART)" $(SPREAD) $(BESIDES)
+
+# Holds the mark `slow` against the CPU time of every case; on a quiet machine.
+marks: $(STAMP)
 	$(BIN)/pytest -m "$(APART)" --check-marks $(SPREAD) $(BESIDES)
 
 # The tests of the service on PostgreSQL and Celery: the real servers, on free ports. Each file runs beside one of the

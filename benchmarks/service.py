@@ -41,7 +41,7 @@ from synthesis.registry import KINDS
 from tests.support.problems.given_mechanisms import STATED
 from tests.support.service import hostile
 from tests.support.service.hostile_bodies import ENORMOUS, INVALID, MALFORMED
-from tests.support.service.limits import HALVES
+from tests.support.service.raw_requests import HALVES
 from tests.support.service.running import START_S, RunningServer, alive, until
 
 PROBLEM_5_26 = {
