@@ -67,7 +67,7 @@ class _SteeringMotion(NamedTuple):
     barker: BarkerClass | None = None
 
 
-class _SteeredTurn(NamedTuple):
+class _HalfTurn(NamedTuple):
     """A turn to one side: angles of the wheels, radians, the outer one's error, degrees, and inputs."""
 
     inner: Real
@@ -90,7 +90,7 @@ def _compute_turning_radius(problem: SteeringProblem, outer: float) -> float:
     return problem.wheelbase / math.sin(outer) + overhang
 
 
-def _list_positions(half: _SteeredTurn, ratio: float, *, turns: bool) -> list[SteeringPosition]:
+def _list_positions(half: _HalfTurn, ratio: float, *, turns: bool) -> list[SteeringPosition]:
     """Return positions evenly spaced over a turn; ``turns``: whether the input turns rather than slides."""
     listed = np.linspace(0, len(half.inner) - 1, REPORTED_COUNT, dtype=int)
     return [
@@ -140,7 +140,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     arm = joints["A"] - joints["O2"]
     behind = arm.imag < 0.0
     # The mechanism is symmetrical: positions of the left turn are enough for the report.
-    half = _SteeredTurn(*(values[SAMPLE_COUNT // 2 :] for values in (inner, outer, error, driven.inputs)))
+    half = _HalfTurn(*(values[SAMPLE_COUNT // 2 :] for values in (inner, outer, error, driven.inputs)))
     measures = measure_linkage(
         list_link_lengths(design),
         problem.pivot_distance,
