@@ -60,6 +60,14 @@ class Statement(DimensionedModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    def find_changed_fields(self) -> set[str]:
+        """Return the fields that have a value other than their default.
+
+        ``model_fields_set`` does not do: a job shows its problem with all defaults, and a client may post that again.
+        """
+        fields = type(self).model_fields
+        return {name for name in self.model_fields_set if getattr(self, name) != fields[name].default}
+
 
 class Range(Statement):
     """Base of ranges with a minimum, `min`, and a maximum, `max`: equal values fix a number; one may be left out."""

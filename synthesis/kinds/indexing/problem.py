@@ -437,7 +437,7 @@ class IndexingProblem(ProblemBase):
         return []
 
     def _find_ratchet_errors(self) -> list[Contradiction]:
-        stated = self.model_fields_set
+        changed = self.find_changed_fields()
         foreign = {
             "rollers": self.rollers,
             "center_distance": self.center_distance,
@@ -452,7 +452,7 @@ class IndexingProblem(ProblemBase):
             if value is not None
         ]
         for name in ("crank_shaft_diameter", "load_inertia", "clearances"):
-            if name in stated and getattr(self, name) != type(self).model_fields[name].default:
+            if name in changed:
                 found.append(Contradiction(f"/{name}", "not applicable to a ratchet; omit it"))
         if self.driver != "crank":
             found.append(Contradiction("/driver", "a drag link drives plane Geneva drives only"))

@@ -110,10 +110,8 @@ class SoughtSpring(Statement):
     def _validate_form(self) -> Self:
         if (self.ends is None) == (self.links is None):
             raise ValueError("give the ends of a spring, or the links of a torsion spring")
-        strange = [
-            name for name in (TORSION_FIELDS if self.links is None else LENGTH_FIELDS) if name in self.model_fields_set
-        ]
-        strange = [name for name in strange if getattr(self, name) != type(self).model_fields[name].default]
+        changed = self.find_changed_fields()
+        strange = [name for name in (TORSION_FIELDS if self.links is None else LENGTH_FIELDS) if name in changed]
         if strange:
             raise ValueError(f"not applicable to this type of spring: {', '.join(strange)}")
         for name, least, most in (

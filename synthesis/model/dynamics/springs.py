@@ -42,8 +42,9 @@ class SpringSpec(Statement):
 
     @model_validator(mode="after")
     def _validate_form(self) -> Self:
-        linear = {"ends", "rate", "free_length", "preload", "one_sided"} & self.model_fields_set
-        turning = {"torsion", "links", "free_angle"} & self.model_fields_set
+        changed = self.find_changed_fields()
+        linear = {"ends", "rate", "free_length", "preload", "one_sided"} & changed
+        turning = {"torsion", "links", "free_angle"} & changed
         if (self.ends is None) == (self.torsion is None):
             raise ValueError("give the ends of a linear spring, or the torsion rate and the links of a torsion spring")
         if linear and turning:

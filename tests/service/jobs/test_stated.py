@@ -104,6 +104,18 @@ def test_examples_are_kept(kind: str) -> None:
         assert keeps(example).find_contradictions() == []
 
 
+SPRINGS = (
+    {"ends": [{"link": "ground", "point": [0.0, 250.0]}, {"link": "lever", "point": [100.0, 0.0]}], "rate": 20.0},
+    {"torsion": 3.0, "links": ["ground", "lever"]},
+)
+
+
+@pytest.mark.parametrize("spring", SPRINGS, ids=["linear", "torsion"])
+def test_a_spring_is_accepted_with_its_defaults(spring: dict[str, Any]) -> None:
+    statement = KINDS["spring_balancing"].examples[0]
+    keeps({**statement, "dynamics": {**statement["dynamics"], "springs": [spring]}})
+
+
 def test_a_stock_is_a_statement() -> None:
     assert keeps(STOCK).find_contradictions() == []
     both = parse_problem({**STOCK, "teeth": {"max": 100}})
