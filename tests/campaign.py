@@ -1,12 +1,14 @@
 """The time budget of a campaign, and what a test of it tries within its part.
 
-``--campaign-minutes`` is how long the campaign may take; ``inf`` tries everything. Every test of the campaign tries
-its first case, whatever the budget. It goes on with its further cases until they have used its part of the budget;
-the rest is skipped with that reason. Loops over random cases inside a test are shortened in proportion.
+``--campaign-minutes`` is how long the campaign may take; ``inf`` tries everything. Half of the budget goes to one case
+each of as many tests as it suffices for. They are drawn by the date, so that every test has its turn within some days;
+``--campaign-day`` repeats the draw of another day. The other half is shared by the further cases of these tests. Loops
+over random cases inside a test are shortened in proportion.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 from collections import defaultdict
@@ -23,7 +25,13 @@ WHOLE_MINUTES = 300.0
 """Duration of the whole campaign on two cores, in minutes; the random cases inside a test are a share by it."""
 
 MAX_FURTHER_SHARE = 0.5
-"""Share of the budget for further cases. The first case of each test takes the other half."""
+"""Share of the budget for further cases. One case of each test that was drawn takes the other half."""
+
+FIRST_CASE_S = 2.5
+"""Mean duration of one case with what it shares with others, in seconds: 1,000 cases took 21 minutes on two cores."""
+
+MAX_OVERRUN = 1.5
+"""Multiple of the budget after which no further case begins: the mean of the drawn cases may be above the usual one."""
 
 _budget_minutes = DEFAULT_MINUTES
 
@@ -55,40 +63,58 @@ def sampled(cases: int) -> int:
 
 
 class Budget:
-    """Time that the cases of each campaign test have used in this process."""
+    """The cases of a campaign that fit into its time, and the time that each test has used in this process."""
 
     def __init__(self) -> None:
         self._allowance_s = math.inf
         self._first: dict[str, str] = {}
         self._used: dict[str, float] = defaultdict(float)
         self._begun: dict[str, float] = {}
+        self._deadline = math.inf
 
-    def share_out(self, items: Iterable[pytest.Item]) -> None:
-        """Give each test with further cases the same part of the budget."""
-        counts: dict[str, int] = defaultdict(int)
+    def choose_cases(self, items: list[pytest.Item], day: int) -> list[pytest.Item]:
+        """Take tests out of ``items`` for which the budget has no time today, and return their cases."""
+        cases: dict[str, list[str]] = defaultdict(list)
         for item in items:
             if item.get_closest_marker("campaign") is not None:
-                test = item.nodeid.partition("[")[0]
-                self._first.setdefault(test, item.nodeid)
-                counts[test] += 1
-        tests = sum(count > 1 for count in counts.values())
+                cases[_name_test(item)].append(item.nodeid)
         processes = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-        if tests:
-            self._allowance_s = MAX_FURTHER_SHARE * 60.0 * _budget_minutes * processes / tests
+        seconds = 60.0 * _budget_minutes * processes
+        count = min(len(cases), (1.0 - MAX_FURTHER_SHARE) * seconds / FIRST_CASE_S)
+        # The order is another one every day, so that all tests and all of their cases have their turn within days.
+        tests = set(sorted(cases, key=lambda test: _draw(test, day))[: math.ceil(count)])
+        self._first = {test: min(cases[test], key=lambda case: _draw(case, day)) for test in tests}
+        further_tests = sum(len(cases[test]) > 1 for test in tests)
+        if further_tests:
+            self._allowance_s = MAX_FURTHER_SHARE * seconds / further_tests
+        self._deadline = monotonic() + MAX_OVERRUN * 60.0 * _budget_minutes
+        dropped = [item for item in items if _name_test(item) in cases.keys() - tests]
+        items[:] = [item for item in items if _name_test(item) not in cases or _name_test(item) in tests]
+        return dropped
 
     def begin(self, item: pytest.Item) -> None:
         """Skip a further case of a test that has used its part; otherwise start its clock."""
-        test = item.nodeid.partition("[")[0]
-        if self._first.get(test, item.nodeid) != item.nodeid and self._used[test] >= self._allowance_s:
+        test = _name_test(item)
+        is_first = self._first.get(test) == item.nodeid
+        if (not is_first and self._used[test] >= self._allowance_s) or monotonic() > self._deadline:
             pytest.skip(f"a campaign of {_budget_minutes:g} minutes leaves no time for it")
         self._begun[item.nodeid] = monotonic()
 
     def end(self, item: pytest.Item) -> None:
         """Stop the clock of a case. The first case of a test is not counted."""
         begun = self._begun.pop(item.nodeid, None)
-        test = item.nodeid.partition("[")[0]
+        test = _name_test(item)
         if begun is not None and self._first.get(test) != item.nodeid:
             self._used[test] += monotonic() - begun
+
+
+def _name_test(item: pytest.Item) -> str:
+    return item.nodeid.partition("[")[0]
+
+
+def _draw(name: str, day: int) -> bytes:
+    """Return what a test or a case is drawn by: the same in every process on one day."""
+    return hashlib.sha256(f"{day} {name}".encode()).digest()
 
 
 BUDGET = Budget()

@@ -1,5 +1,7 @@
 """Settings that all tests share, the size of campaigns, and the engines that the service runs on while they run."""
 
+from datetime import date
+
 import pytest
 from hypothesis import settings
 
@@ -28,6 +30,17 @@ def pytest_addoption(parser):
         default=campaign.DEFAULT_MINUTES,
         help="how long a campaign may take; inf for all cases",
     )
+    parser.addoption(
+        "--campaign-day",
+        type=int,
+        default=date.today().toordinal(),
+        help="the day, as an ordinal number, whose draw of campaign tests is made; today by default",
+    )
+
+
+def pytest_report_header(config):
+    minutes, day = config.getoption("--campaign-minutes"), config.getoption("--campaign-day")
+    return f"campaign: {minutes:g} minutes, drawn by --campaign-day {day}"
 
 
 def pytest_configure(config):
@@ -37,9 +50,11 @@ def pytest_configure(config):
 
 
 @pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     """Cases that a mark deselects are gone by now."""
-    campaign.BUDGET.share_out(items)
+    dropped = campaign.BUDGET.choose_cases(items, config.getoption("--campaign-day"))
+    if dropped:
+        config.hook.pytest_deselected(items=dropped)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -44,7 +44,8 @@ def test_a_brute_force_finds_the_same_in_many_tasks() -> None:
     found = compare_typed(typed_trains.statements(count, 0))
     assert found.faults == []
     assert found.some > 0.5 * count
-    assert found.none > 0
+    # About one task in twenty has no train.
+    assert found.none > 0 or count < 100
 
 
 def test_the_brute_force_tells_a_difference() -> None:
