@@ -16,7 +16,7 @@ def test_a_key_opens_the_service(chromium, tmp_path):
     studio = Studio(chromium, server.url, ready="#key[open]")
     try:
         page = studio.page
-        assert "key is needed" in page.inner_text("#status")
+        assert "Send an API key" in page.inner_text("#status")
         # The browser itself reports the answer 401; nothing else may have gone wrong.
         assert [text for text in studio.wrong if "401" not in text] == []
         studio.wrong.clear()

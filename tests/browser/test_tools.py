@@ -148,14 +148,14 @@ def test_a_plot_is_looked_at_nearer_and_taken_home(studio):
         assert picture.width == 1200
         assert len(picture.convert("RGB").getcolors(1 << 20)) > 10
     ends = plot.locator("svg .tick").all_text_contents()[-2:]
-    plot.get_by_role("button", name="Nearer").click()
+    plot.get_by_role("button", name="Zoom in").click()
     nearer = plot.locator("svg .tick").all_text_contents()[-2:]
     whole, part = (
         float(two[1].rstrip("°").replace("−", "-")) - float(two[0].rstrip("°").replace("−", "-"))
         for two in (ends, nearer)
     )
     assert part == pytest.approx(whole / 2, abs=2.0)
-    assert page.evaluate("document.activeElement.getAttribute('aria-label')").startswith("Nearer"), "the focus stays"
+    assert page.evaluate("document.activeElement.getAttribute('aria-label')").startswith("Zoom in"), "the focus stays"
     # What stands at the pointer is read while it rests there.
     box = plot.locator("svg").bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)

@@ -15,7 +15,7 @@ export const CLOCK_HEIGHT = 48;
  * The parts of a view of a mechanism.
  * @typedef {object} View
  * @property {SVGSVGElement | HTMLElement} picture takes the stage
- * @property {HTMLElement[]} [tools] over the picture, before those that bring it nearer
+ * @property {HTMLElement[]} [tools] over the picture, before those that zoom
  * @property {HTMLElement} [clock] the row of its player, below the picture
  * @property {(Node | string | null | undefined | false)[]} [below] on the stage, beneath the picture
  * @property {(Node | string | null | undefined | false)[]} [beside] in the drawer, with the numbers

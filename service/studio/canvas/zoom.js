@@ -59,8 +59,8 @@ export class Zoom {
     this.buttons = createElement(
       "div",
       { class: "zoom" },
-      button("−", t`Farther`, () => this.zoomByButton(1 / BUTTON_FACTOR)),
-      button("+", t`Nearer`, () => this.zoomByButton(BUTTON_FACTOR)),
+      button("−", t`Zoom out`, () => this.zoomByButton(1 / BUTTON_FACTOR)),
+      button("+", t`Zoom in`, () => this.zoomByButton(BUTTON_FACTOR)),
       button(t`Fit`, t`Fit everything`, () => {
         this.fit();
         this.settled(null);

@@ -65,8 +65,8 @@ export function listBindings({ answers, desk, store, solve, browse, link, sheet 
     { keys: ["]"], shown: "", text: "", act: () => answers.moveSelection(1) },
     { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.pressTab("compare") },
     { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.togglePin() },
-    { keys: ["+", "="], shown: t`+ or −`, text: t`Nearer, farther`, act: pressButton(t`Nearer`) },
-    { keys: ["-"], shown: "", text: "", act: pressButton(t`Farther`) },
+    { keys: ["+", "="], shown: t`+ or −`, text: t`Zoom in or out`, act: pressButton(t`Zoom in`) },
+    { keys: ["-"], shown: "", text: "", act: pressButton(t`Zoom out`) },
     { keys: ["f"], shown: "F", text: t`Fit everything`, act: pressButton(t`Fit everything`) },
     { keys: ["r"], shown: "R", text: t`Ruler`, act: () => findVisible('[data-tool="ruler"]')?.click() },
     {

@@ -21,7 +21,7 @@ const NOISE_SHARE = 1e-9;
 /** Minimum ratio of a line's range to that of its middle four fifths for which its peaks are cut off. */
 const STEEP_RATIO = 8;
 
-/** How much of a plot a nearer look has of the one before, and the fewest samples of one. */
+/** Share of its range that a plot keeps when it is zoomed in, and the fewest samples that it shows. */
 const ZOOM_SHARE = 0.5;
 const MIN_SAMPLES = 8;
 
@@ -232,7 +232,7 @@ function createPlot(plotted, input, lead, unit, { whole = false, range: looked }
     });
     other(at, true);
   };
-  const nearer = (/** @type {number} */ share) => {
+  const zoom = (/** @type {number} */ share) => {
     const wide = Math.min(samples, Math.max(MIN_SAMPLES, Math.round((end - start) * share)));
     const from = Math.min(samples - wide, Math.max(0, Math.round(at - wide / 2)));
     look({ range: [from, from + wide] });
@@ -259,8 +259,8 @@ function createPlot(plotted, input, lead, unit, { whole = false, range: looked }
     createElement(
       "div",
       { class: "row" },
-      small("−", t`Farther`, () => nearer(1 / ZOOM_SHARE), end - start >= samples),
-      small("+", t`Zoom in at the current position`, () => nearer(ZOOM_SHARE), end - start <= MIN_SAMPLES),
+      small("−", t`Zoom out`, () => zoom(1 / ZOOM_SHARE), end - start >= samples),
+      small("+", t`Zoom in at the current position`, () => zoom(ZOOM_SHARE), end - start <= MIN_SAMPLES),
       small("CSV", t`Download the numbers as CSV`, () => saveFile(exportCsv(title, lines, input, unit), `${name}.csv`)),
       small(t`Picture`, t`Download the picture`, async () =>
         saveFile(await exportPicture(picture, title), `${name}.png`),
