@@ -322,7 +322,7 @@ def test_the_chain_is_kept_as_it_is_stated(client, chain):
     [
         {"chain": {"links": [700.0, None]}, "constraints": {"max_link_ratio": 50.0}},
         pytest.param(
-            {"constraints": {"fixed_pivot_region": {"x": [2600.0, 2900.0], "y": [-100.0, 100.0]}}},
+            {"constraints": {"fixed_pivot_region": {"x": [1600.0, 2900.0], "y": [-1000.0, 1000.0]}}},
             marks=pytest.mark.campaign,
         ),
     ],

@@ -232,7 +232,7 @@ def test_scripts_of_designs_run_and_find_the_motion_of_the_analysis(tmp_path: Pa
             check=False,
         )
         assert ran.returncode == 0, ran.stdout + ran.stderr
-        worst = max(float(found) for found in re.findall(r": ([0-9.]+e[-+][0-9]+) (?:rad|m),", ran.stdout))
+        worst = max(float(found) for found in re.findall(r": ([0-9.]+e[-+][0-9]+) (?:rad|m) ", ran.stdout))
         print(f"{name}: {worst:.1e}")
         assert worst < ANGLE
         assert len((tmp_path / f"{name}.csv").read_text().splitlines()) == SAMPLES + 2

@@ -201,4 +201,4 @@ def test_of_dwells_out_of_reach_those_that_were_found_are_told() -> None:
     assert result.nearest_miss is not None
     first, second = result.nearest_miss.reachable.dwell_angles
     assert first / second == pytest.approx(1.5)
-    assert f"{first:.4g}° and {second:.4g}° were found" in result.summary
+    assert f"The longest dwells found are {first:.4g}° and {second:.4g}°" in result.summary

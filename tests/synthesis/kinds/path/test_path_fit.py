@@ -248,7 +248,7 @@ def test_a_thousand_points_take_seconds():
 def test_the_same_statement_has_the_same_answer_and_progress_rises():
     points = positions(CRANK_ROCKER, np.linspace(0.0, 5.0, 12), OPEN_ASSEMBLY).p + 0.05
     problem = parse_problem({"kind": "path", "points": listed(points), "max_designs": 3})
-    assert problem.fitted
+    assert problem.is_fitted
     told = []
     first = solve(problem, lambda share, message: told.append(share))
     assert told == sorted(told)
