@@ -17,8 +17,8 @@
 # make test-docs  make the site, and see that every link holds and that what it shows has run
 # make package  a wheel, in dist/
 # make vendor  fetch three.js, which the studio shows assemblies with, as it is published
-# make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
-# make types   rewrite the studio's types of the API, service/studio/types/api.d.ts, after docs/openapi.json has changed
+# make openapi  write the OpenAPI document to var/openapi.json, and the contract that a test holds the API to
+# make types   make the studio's types of the API, service/studio/types/api.d.ts, for an editor
 # make lock    resolve the dependencies of pyproject.toml anew
 
 PYTHON ?= python3
@@ -171,9 +171,9 @@ docs: $(SITE)
 test-docs: $(SITE)
 	$(BIN)/pytest -m site tests/tools/test_site.py
 
-# Rewrites what the service promises; see the difference before it is committed.
+# Rewrites tests/service/api/contract.txt; review the difference before you commit it.
 openapi: $(STAMP)
-	$(BIN)/python -m service.command.cli openapi docs/openapi.json
+	$(BIN)/python -m tools.contract
 
 types: $(STAMP) $(NODE)
 	$(BIN)/python -m tools.studio.types
