@@ -17,8 +17,8 @@
 # make test-docs  make the site, and see that every link holds and that what it shows has run
 # make package  a wheel, in dist/
 # make vendor  fetch three.js, which the studio shows assemblies with, as it is published
-# make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
-# make types   rewrite the studio's types of the API, service/studio/types/api.d.ts, after docs/openapi.json has changed
+# make openapi  write the OpenAPI document to var/openapi.json, and the contract that a test holds the API to
+# make types   make the studio's types of the API, service/studio/types/api.d.ts, for an editor
 # make lock    resolve the dependencies of pyproject.toml anew
 
 PYTHON ?= python3
@@ -27,8 +27,8 @@ BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 SERVING := $(VENV)/.serving
 INSTALLER := $(VENV)/installer
-UV     := $(BIN)/uv
-PIP    := $(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check
+PIP    := $(PYTHON) -m pip --python $(BIN)/python
+UV     := $(INSTALLER)/bin/uv --quiet --config-file $(INSTALLER)/uv.toml
 NODE   := tests/node/node_modules/.installed
 MULTIBODY := $(VENV)/.multibody
 SITE   := $(VENV)/.site
@@ -103,9 +103,10 @@ test-cad:
 cad-suite: $(VENV)/.cad-tests $(NODE)
 	$(BIN)/pytest -m "cad or not slow" -q -n 2 --dist loadgroup tests/cad tests/service/parts/test_parts.py
 
-$(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml
+$(VENV)/.cad-tests: requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@echo "installing the locked packages and the extra cad (once; a minute or two)"
-	$(call install,requirements-dev.lock -r requirements-cad.lock -r tests/cad/mesh.lock)
+	@$(INSTALL) --extra cluster --extra telemetry --extra cad --group dev --group mesh
+	@$(EDITABLE)
 	@touch $@
 
 # How long the random cases may take, in minutes; a quarter of it is the browser's.
@@ -171,18 +172,17 @@ docs: $(SITE)
 test-docs: $(SITE)
 	$(BIN)/pytest -m site tests/tools/test_site.py
 
-# Rewrites what the service promises; see the difference before it is committed.
+# Rewrites tests/service/api/contract.txt; review the difference before you commit it.
 openapi: $(STAMP)
-	$(BIN)/python -m service.command.cli openapi docs/openapi.json
+	$(BIN)/python -m tools.contract
 
 types: $(STAMP) $(NODE)
 	$(BIN)/python -m tools.studio.types
 
 # All that runs outside of a checkout: pip install dist/*.whl && mechsynth serve
-package: $(STAMP)
+package: $(INSTALLER)/uv.toml
 	@rm -rf build dist
-	@$(PYTHON) -m pip --python $(BIN)/python wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation \
-	    --wheel-dir dist .
+	@$(UV) build --wheel --python $(PYTHON) --require-hashes --build-constraints requirements.lock --out-dir dist
 	@rm -rf build
 	@ls dist/*.whl
 
@@ -201,51 +201,48 @@ vendor:
 	@sed "s#} from 'three';#} from './three.module.min.js';#" var/vendor/package/examples/jsm/controls/OrbitControls.js \
 	    > $(FOR_STUDIO)/OrbitControls.js
 
-# The virtual environment is made without ensurepip, which some systems leave out. The system's pip puts uv and setuptools
-# beside it, which those who only serve do not keep: uv installs the rest in a tenth of pip's time. Where there is no uv,
-# or it finds no package, pip may: its settings can name another index. Bytecode is compiled on all processors.
-define install
+# The virtual environment is made without ensurepip, which some systems leave out. The system's pip installs uv beside it,
+# and uv everything else in a tenth of pip's time. uv reads no settings of pip: an index that they name is passed on.
+$(INSTALLER)/uv.toml: requirements.lock
 	@test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
-	@for tool in setuptools uv; do \
-	    sed -n "/^$$tool==/,/# via/p" requirements-dev.lock > $(VENV)/$$tool.lock; \
-	    $(PIP) --no-compile --upgrade --target $(INSTALLER) --require-hashes -r $(VENV)/$$tool.lock \
-	    || test $$tool = uv || exit 1; done
-	@export PYTHONPATH=$(INSTALLER) UV_NO_PROGRESS=1; uv="$(INSTALLER)/bin/uv pip install --python $(BIN)/python --quiet"; \
-	    { $$uv --require-hashes -r $(1) || $(PIP) --no-compile --require-hashes -r $(1); } \
-	    && { $$uv --no-deps --no-build-isolation -e . || $(PIP) --no-deps --no-build-isolation -e .; }
-	@rm -rf $(INSTALLER)
-	@$(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib
-endef
+	@sed -n "/^uv==/,/# via/p" requirements.lock > $(VENV)/uv.lock
+	@$(PIP) install --quiet --disable-pip-version-check --no-compile --upgrade --target $(INSTALLER) --require-hashes \
+	    -r $(VENV)/uv.lock
+	@{ $(PIP) config get :env:.index-url || $(PIP) config get global.index-url; } 2> /dev/null \
+	    | sed 's/.*/index-url = "&"/' > $@
+
+# One lock has the packages of all extras and groups of pyproject.toml: users get the versions that developers have tried.
+# A package that is not in it, or has another hash, is refused.
+INSTALL = $(UV) pip install --python $(BIN)/python --require-hashes --constraints requirements.lock -r pyproject.toml
+
+# The project itself, and bytecode of everything, on all processors.
+EDITABLE = $(UV) pip install --python $(BIN)/python --no-deps --build-constraints requirements.lock -e . \
+    && $(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib
 
 # What serving needs. The kernels of the most usual problems are compiled at the first start, the rest beside it.
-$(SERVING): requirements.lock pyproject.toml
+$(SERVING): requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@echo "installing the locked packages (once; half a minute)"
-	$(call install,requirements.lock)
+	@$(INSTALL)
+	@$(EDITABLE)
 	@touch $@
 
 # What solids need besides: Open CASCADE, and what it brings.
-$(CAD): requirements-cad.lock pyproject.toml | $(SERVING)
+$(CAD): requirements.lock pyproject.toml | $(SERVING)
 	@echo "installing the extra cad (once; a gigabyte)"
-	$(call install,requirements-cad.lock)
+	@$(INSTALL) --extra cad
 	@touch $@
 
 # What developing needs, and all kernels compiled.
-$(STAMP): requirements-dev.lock requirements.lock pyproject.toml
+$(STAMP): requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@echo "installing the locked packages for development and compiling all kernels (once; minutes)"
-	$(call install,requirements-dev.lock)
+	@$(INSTALL) --extra cluster --extra telemetry --group dev
+	@$(EDITABLE)
 	@$(BIN)/mechsynth warm
 	@touch $(SERVING) $@
 
-# The same versions for all: developers' packages first, and users' are among them.
-RESOLVE = $(UV) pip compile pyproject.toml --python-version 3.11 --universal --generate-hashes --no-emit-index-url \
-    --no-header --quiet
-
-lock: $(STAMP)
-	$(RESOLVE) --extra cluster --extra telemetry --extra dev -o requirements-dev.lock
-	$(RESOLVE) -c requirements-dev.lock -o requirements.lock
-	$(RESOLVE) --extra cluster --extra telemetry -c requirements-dev.lock -o requirements-cluster.lock
-	$(RESOLVE) --extra docs -c requirements-dev.lock -o requirements-docs.lock
-	$(RESOLVE) --extra cad -c requirements-dev.lock -o requirements-cad.lock
+lock: $(INSTALLER)/uv.toml
+	@$(UV) pip compile pyproject.toml --python-version 3.11 --universal --generate-hashes --no-emit-index-url --no-header \
+	    --all-extras --group dev --group docs --group mesh --group multibody -o requirements.lock
 
 # What the tests need of node, from the lock beside it.
 $(NODE): tests/node/package.json tests/node/package-lock.json
@@ -255,15 +252,14 @@ $(NODE): tests/node/package.json tests/node/package-lock.json
 	@cd tests/node && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 	@touch $@
 
-# Independent multibody programs and a parser of Modelica, which the campaign alone asks: no part of the service, and none
-# of its lock.
-$(MULTIBODY): tests/oracles/multibody.lock | $(STAMP)
-	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r tests/oracles/multibody.lock
+# Independent multibody programs and a parser of Modelica, which the campaign alone asks.
+$(MULTIBODY): requirements.lock | $(STAMP)
+	@$(INSTALL) --group multibody
 	@touch $@
 
 # What makes the site, and runs the notebooks in it.
-$(SITE): requirements-docs.lock | $(STAMP)
-	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r requirements-docs.lock
+$(SITE): requirements.lock | $(STAMP)
+	@$(INSTALL) --group docs
 	@touch $@
 
 clean:

@@ -45,7 +45,8 @@ def installed(tmp_path_factory, wheel) -> Path:
     environment = tmp_path_factory.mktemp("installed") / "environment"
     run(sys.executable, "-m", "venv", "--without-pip", environment)
     uv = (Path(sys.executable).with_name("uv"), "pip", "install", "--python", environment / "bin" / "python")
-    run(*uv, "--quiet", "--require-hashes", "-r", ROOT / "requirements.lock")
+    locked = ("--require-hashes", "--constraints", ROOT / "requirements.lock")
+    run(*uv, "--quiet", *locked, "-r", ROOT / "pyproject.toml")
     run(*uv, "--quiet", "--no-deps", wheel)
     return environment / "bin"
 

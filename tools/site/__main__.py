@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from service.server.app import build_api_document
 from tools.site import decisions, gallery, http_reference, notebooks, pages, python_reference
 
 ROOT = Path(__file__).parents[2]
@@ -20,7 +22,7 @@ def main(out: Path) -> int:
     pages.gathered(ROOT, folder)
     folders = {
         "decisions": decisions.written(ROOT / "docs" / "decisions", folder),
-        "reference/http": http_reference.written(ROOT / "docs" / "openapi.json", folder),
+        "reference/http": http_reference.written(json.loads(build_api_document()), folder),
         "reference/python": python_reference.written(ROOT, folder),
         "notebooks": notebooks.written(ROOT / "docs" / "notebooks", folder),
         "gallery": gallery.written(ROOT / "docs" / "gallery", folder),

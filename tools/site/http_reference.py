@@ -1,4 +1,4 @@
-"""The pages of the HTTP reference, made of ``docs/openapi.json``: operations, and the models of each kind of problem.
+"""The pages of the HTTP reference, made of the OpenAPI document: operations, and the models of each kind of problem.
 
 A model that only one kind of problem uses stands on the page of that kind, under its statement or its answer; what
 several kinds state, what several kinds answer, and what else operations take and give, on a page each.
@@ -270,9 +270,9 @@ def _operation(path: str, method: str, operation: Schema, places: dict[str, str]
     return "\n".join(lines) + "\n\n"
 
 
-def written(document: Path, folder: Path) -> list[tuple[str, str]]:
+def written(document: Schema, folder: Path) -> list[tuple[str, str]]:
     """Write the pages of a document below a folder; returns their titles and paths there, for the nav."""
-    pages = http_reference(json.loads(document.read_text("utf-8")))
+    pages = http_reference(document)
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
     for name, text in pages.items():
         (folder / FOLDER / name).write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-/** What the page knows of the service's values, by short names; ./api.d.ts is made of the OpenAPI document. */
+/** What the page knows of the service's values, by short names; `make types` makes ./api.d.ts from the code. */
 
 import type { components } from "./api.js";
 
