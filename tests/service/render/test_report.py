@@ -191,6 +191,7 @@ def test_what_cannot_be_reported_is_refused(server, client):
     assert json.loads(refused.text)["type"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_kinds_tell_which_files_there_are(client, kind):
     (told,) = [one for one in client.get("/v1/problems").json()["problems"] if one["kind"] == kind]

@@ -74,6 +74,7 @@ def test_every_field_is_compared_or_listed(kind: str) -> None:
     assert not stale
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", sorted(set(KINDS) - GEARS))
 def test_every_check_is_compared_or_listed(kind: str) -> None:
     known = {name.removeprefix("checks.") for name in [*COMPARED[kind], *NEVER_STATED.get(kind, "").split()]}
