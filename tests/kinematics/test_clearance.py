@@ -210,6 +210,7 @@ def test_many_edges_are_as_far_apart_as_every_edge_says():
     assert met + touched < 250
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(EVERY, list(EVERY)[::3]))
 def test_least_distances_agree_with_a_dense_drive(name):
     rng, mechanism = one(name, 4)

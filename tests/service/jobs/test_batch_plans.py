@@ -85,6 +85,7 @@ def test_ids_of_samples_are_none_that_are_made_in_the_same_millisecond():
     assert {ULID.from_str(found).milliseconds for found in ids} == {first.milliseconds}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_equal_problems_have_one_digest(kind, monkeypatch):
     problem = parse_problem(get_first_example(kind))

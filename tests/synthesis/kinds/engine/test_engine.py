@@ -247,6 +247,7 @@ def test_stated_throws_need_not_fire_evenly() -> None:
     assert least[0] > 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "strokes"), [(10, 4), (12, 4), (9, 4), (10, 2)])
 def test_more_throws_are_counted(count: int, strokes: int) -> None:
     result = answered(count, {"type": "inline"}, strokes, max_designs=2)
