@@ -46,7 +46,8 @@ def pytest_report_header(config):
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
     campaign.choose_budget(config.getoption("--campaign-minutes"))
-    config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
+    if cpu_time.is_requested(config):
+        config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
 
 
 @pytest.hookimpl(trylast=True)

@@ -135,6 +135,7 @@ def test_every_path_that_a_page_names_exists() -> None:
     check_each(PAGES, check)
 
 
+@pytest.mark.slow
 def test_the_door_for_python_costs_nothing_until_it_is_used() -> None:
     program = (
         "import sys, synthesis\n"

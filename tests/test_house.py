@@ -81,6 +81,7 @@ def test_kinematics_knows_numpy_and_numba_only() -> None:
     assert foreign == set()
 
 
+@pytest.mark.slow
 def test_kinds_are_known_by_name_where_they_are_listed_drawn_built_and_simulated_only() -> None:
     """What goes over all kinds asks the registry."""
     allowed = (

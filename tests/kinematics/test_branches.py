@@ -96,6 +96,7 @@ def test_cycle_is_as_many_turns_as_the_gears_need() -> None:
         assert compute_cycle(mechanism) == pytest.approx(period_of(mechanism), rel=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [pytest.param(ratio, marks=effort(ratio, (-1.0, 0.5), ())) for ratio in RATIOS])
 def test_circuits_branches_and_toggles_of_geared_fivebars(ratio: float) -> None:
     rng = np.random.default_rng([43, RATIOS.index(ratio)])

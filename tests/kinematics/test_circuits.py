@@ -43,6 +43,7 @@ def settled(rng: np.random.Generator, n: int, m: int) -> tuple[Fourbar, np.ndarr
 # -- circuits ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_count_of_circuits_and_branches() -> None:
     """Four configurations, mirrored in the ground line and of both assemblies, lie on all circuits that there are."""
     rng = np.random.default_rng(21)
@@ -104,6 +105,7 @@ def test_every_toggle_is_met_once_in_a_round() -> None:
         assert bool(has_full_rotation(one)) == (on_circuit == 0)
 
 
+@pytest.mark.slow
 def test_stays_on_branch_is_assembled_all_the_way() -> None:
     """Turning from start to end by up to three turns, each way: sampled positions are valid all the way, or not."""
     rng = np.random.default_rng(24)
@@ -151,6 +153,7 @@ def routes(seed: int, n: int, m: int) -> tuple[Fourbar, np.ndarray, np.ndarray]:
     return linkage, ground + delta + TURN * rng.integers(-2, 3, (n, m)), sign
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [2, 3, 4, 6])
 def test_traverse_agrees_with_the_continuation(m: int) -> None:
     compare_traversals(30 + m, 250, m)

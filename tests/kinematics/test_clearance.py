@@ -210,6 +210,7 @@ def test_many_edges_are_as_far_apart_as_every_edge_says():
     assert met + touched < 250
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(EVERY, list(EVERY)[::3]))
 def test_least_distances_agree_with_a_dense_drive(name):
     rng, mechanism = one(name, 4)
@@ -233,6 +234,7 @@ def test_least_distances_agree_with_a_dense_drive(name):
         assert low <= found.at <= high
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", further(EVERY, [name for name in EVERY if not name.startswith(("stephenson_2", "dwell"))][::2])
 )
@@ -352,6 +354,7 @@ def test_overlapping_outlines_say_by_how_much():
     assert (found.least, found.keeps, found.decided) == (pytest.approx(-0.4, abs=1e-4), False, True)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_reached_is_not_kept():
     """A range that the mechanism does not reach the end of: nothing is proven there."""
     rocker = catalogue.make_fourbar(Fourbar.from_lengths(5.0, 4.0, 3.0, 7.0), input_angle=0.9)

@@ -139,6 +139,7 @@ def test_parallel_motion_of_a_printed_linkage(case: Case) -> None:
 # -- Roberts and Chebyshev ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", range(4))
 def test_cognates_trace_the_curve_of_the_source(drive: int) -> None:
     _, linkage, theta, sign = sample(11, margin=1e-3)
@@ -148,6 +149,7 @@ def test_cognates_trace_the_curve_of_the_source(drive: int) -> None:
     assert (np.abs(there.p - at.p) / size_of(linkage)).max() <= SAME_CURVE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", range(4))
 def test_cognate_has_no_position_less_than_the_source(drive: int) -> None:
     """Up to the toggles themselves, where half the digits are lost."""
@@ -166,6 +168,7 @@ def test_cognate_has_no_position_less_than_the_source(drive: int) -> None:
     assert close[at.valid].mean() > 0.9999
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", range(4))
 def test_each_link_turns_with_its_link_of_the_source(drive: int) -> None:
     _, linkage, theta, sign = sample(13, margin=1e-2)
@@ -194,6 +197,7 @@ def test_three_pivots_form_a_triangle_like_the_coupler() -> None:
     np.testing.assert_allclose((third - linkage.input_pivot) / base, linkage.coupler_point / linkage.coupler)
 
 
+@pytest.mark.slow
 def test_right_cognate_keeps_crank_and_transmission_angle_in_the_other_assembly() -> None:
     _, linkage, theta, sign = sample(15, margin=1e-3)
     right = build_cognates(linkage).right
@@ -234,6 +238,7 @@ def test_cognates_of_cognates_are_the_three() -> None:
             assert (error / (scale * (1.0 + np.abs(getattr(expected, name))))).max() < 1e-9, name
 
 
+@pytest.mark.slow
 def test_driving_at_the_other_end_is_the_same_mechanism() -> None:
     _, linkage, theta, sign = sample(18, margin=1e-3)
     twice = driven_at_output(driven_at_output(linkage))
@@ -372,6 +377,7 @@ def sixbar_misfit(sixbar, theta, assembly) -> NDArray[np.float64]:
     return np.fmin(*(np.abs(q - at.p - sixbar.translation[axis]) for q in found))
 
 
+@pytest.mark.slow
 def test_geared_fivebar_traces_the_curve() -> None:
     _, linkage, theta, sign = sample(21, margin=1e-3)
     at = positions(linkage, theta, sign)
@@ -386,6 +392,7 @@ def test_geared_fivebar_traces_the_curve() -> None:
     assert np.all((fivebar.phase > -np.pi) & (fivebar.phase <= np.pi))
 
 
+@pytest.mark.slow
 def test_parallel_motion_carries_a_link_without_turning_it() -> None:
     _, linkage, theta, sign = sample(22, margin=1e-3)
     sixbar = build_parallel_motion(linkage)

@@ -112,6 +112,7 @@ def test_sextic_vanishes_on_the_curve() -> None:
     assert (np.abs(found.value / found.gradient) / unit)[away].max() < 1e-10
 
 
+@pytest.mark.slow
 def test_sextic_measures_the_distance_off_the_curve() -> None:
     """A step of 1e-5 of the size across the curve changes the sign, and value / gradient gives the step."""
     _, linkage, theta, sign = sample(32, margin=1e-2)

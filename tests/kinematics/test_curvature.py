@@ -112,6 +112,7 @@ def rates_of(linkage: Fourbar, theta, sign):
     return turns, starts
 
 
+@pytest.mark.slow
 def test_two_links_have_one_velocity_at_their_instant_center() -> None:
     _, linkage, theta, sign = sample(71, margin=1e-2)
     found = instant_centers(linkage, theta, sign)
@@ -223,6 +224,7 @@ def test_pole_as_coupler_point_stands_still() -> None:
     assert (~compute_path_curvature(pinned, theta, sign).valid).mean() > 0.99
 
 
+@pytest.mark.slow
 def test_centrodes_roll_without_slip() -> None:
     """Both have the same velocity at the pole, which ``rate`` is, per radian of the coupler."""
     _, linkage, theta, sign = sample(75, margin=0.1, share=0.6)
@@ -287,6 +289,7 @@ def test_curvature_is_that_of_the_path() -> None:
     assert np.abs(along[bent]).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_euler_savary() -> None:
     """|XI|² = |XC| |XJ| along the ray from the pole I through X; J on the inflection circle, C the centre."""
     _, linkage, theta, sign = sample(82, margin=3e-2, share=0.9)
@@ -366,6 +369,7 @@ def test_curvature_where_the_coupler_does_not_turn() -> None:
     assert (~at.finite)[sound].mean() > 0.9
 
 
+@pytest.mark.slow
 def test_bresse_circles() -> None:
     """At constant input speed: no normal acceleration on one, no tangential acceleration on the other."""
     rng, linkage, theta, sign = sample(86, margin=3e-2, share=0.9)

@@ -369,6 +369,7 @@ def test_no_shift_where_none_is_needed_or_none_helps() -> None:
     assert find_saving_shift(mesh_of(5, 5, 1.0, 20.0)) is None
 
 
+@pytest.mark.slow
 def test_loss_of_a_mesh() -> None:
     """The closed loss factor against sliding power integrated over the path of contact, all pairs sharing the load."""
     mesh = mesh_of(22, 57, 1.0, 20.0)

@@ -166,6 +166,7 @@ def _directions(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return out
 
 
+@pytest.mark.slow
 @kinds
 def test_threads_do_not_disturb_one_another(sample: Callable, module: Any, twin: Callable) -> None:
     rng = np.random.default_rng(85)

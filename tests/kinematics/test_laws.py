@@ -89,6 +89,7 @@ def test_loop_closes_with_rigid_links(sign: int) -> None:
         assert np.abs(error / size)[ok].max() <= CLOSURE
 
 
+@pytest.mark.slow
 def test_point_on_the_coupler_is_rigid() -> None:
     rng, linkage = batch(2)
     at = positions(linkage, assembled_angles(rng, linkage, 3), signs(rng, BATCH))

@@ -68,6 +68,7 @@ def check_none_is_better(seed: int) -> None:
     assert length(planes) == min(length(other) for other in every if merit(other, pins) == best)
 
 
+@pytest.mark.slow
 def test_none_is_better() -> None:
     check_each(range(300), check_none_is_better)
 

@@ -18,6 +18,7 @@ def test_link_sets(case: Case) -> None:
     case.check(link_sets=[[*counts, *[0] * (5 - len(counts))] for counts in found])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", cases("isomer_count"))
 def test_isomers(case: Case) -> None:
     case.check(valid=isomers(case.inputs["links"]))
@@ -38,6 +39,7 @@ def classes(found: list[Joints], links: int) -> set[frozenset[tuple[int, int]]]:
     return {min((renumbered(joints, order) for order in orders), key=sorted) for joints in found}
 
 
+@pytest.mark.slow
 def test_six_links_are_all_the_graphs_without_a_rigid_part() -> None:
     """Of all ways to join six links by seven pins, those that hold no triangle are Watt's and Stephenson's chain."""
     pairs = list(itertools.combinations(range(6), 2))

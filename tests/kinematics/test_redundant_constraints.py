@@ -82,6 +82,7 @@ def test_trammel_with_a_crank_passes_its_change_points() -> None:
     np.testing.assert_allclose(motion.angles["bar"][1], -1.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_short_way_between_two_limits_is_a_motion() -> None:
     """A rocker that stands near its limit, with a copy of the coupler."""
     links = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")}

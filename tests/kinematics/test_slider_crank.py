@@ -148,6 +148,7 @@ def test_derivatives_agree_with_differences(order: int, step: float, close: floa
 # -- toggles -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_limits_are_where_positions_end() -> None:
     linkage, _, _ = sample(95)
     limits, crank, turn = find_crank_limits(linkage), has_full_rotation(linkage), np.linspace(-np.pi, np.pi, 721)

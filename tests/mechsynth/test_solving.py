@@ -99,6 +99,7 @@ def test_what_has_no_joints_has_the_rest_of_its_motion(train):
         train.designs[0].motion(0)
 
 
+@pytest.mark.slow
 def test_designs_are_drawn_and_written(motion, tmp_path):
     design = motion.designs[1]
     assert design.title == "<gripper>, design 2"

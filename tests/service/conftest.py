@@ -11,8 +11,8 @@ from tests.support.service.running import SCRIPTED, RunningServer
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     """The real service, as an operator would run it."""
-    running = RunningServer(tmp_path_factory.mktemp("server"), workers=2, reserve=0)
-    cpu_time.shared_servers.add(running.process.pid)
+    running = RunningServer(tmp_path_factory.mktemp("server"), workers=1, reserve=0)
+    cpu_time.share_server(running.process.pid)
     yield running
     assert running.stop() == 0
 
@@ -21,7 +21,7 @@ def server(tmp_path_factory):
 def scripted(tmp_path_factory):
     """The real service with one worker, whose solver does what a problem's seed says."""
     running = RunningServer(tmp_path_factory.mktemp("scripted"), SCRIPTED, workers=1)
-    cpu_time.shared_servers.add(running.process.pid)
+    cpu_time.share_server(running.process.pid)
     yield running
     assert running.stop() == 0
 

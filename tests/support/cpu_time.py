@@ -45,6 +45,17 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 shared_servers: set[int] = set()
 """Process ids of servers that many cases share."""
 
+own_servers: set[int] = set()
+"""Process ids of running servers that a case or a file has for itself. Each takes seconds to start, so that the cases
+which need one may be marked ``slow`` whatever they cost."""
+
+
+def share_server(pid: int) -> None:
+    """Count a server among those that many cases share."""
+    own_servers.discard(pid)
+    shared_servers.add(pid)
+
+
 _charged = 0.0
 
 
@@ -175,7 +186,9 @@ class CpuTimePlugin:
             if own > SLOW_S:
                 own /= measure_slowness()
             apart = any(mark.name in JUDGED_APART for mark in item.iter_markers())
-            marked = None if apart else item.get_closest_marker("slow") is not None
+            marked: bool | None = item.get_closest_marker("slow") is not None
+            if apart or (marked and own_servers):
+                marked = None
             item.user_properties.append(("cpu", (own, servers, marked)))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -230,6 +243,11 @@ class CpuTimePlugin:
                     terminalreporter.section(title)
                     for line in sorted(lines):
                         terminalreporter.write_line(line)
+
+
+def is_requested(config: pytest.Config) -> bool:
+    """Return whether the CPU time of cases is asked for: reading it costs each case some milliseconds."""
+    return bool(config.getoption("--check-marks") or config.getoption("--cpu-times"))
 
 
 def is_controller(config: pytest.Config) -> bool:

@@ -10,6 +10,7 @@ LANGUAGES = sorted(path.stem for path in (STUDIO / "messages").glob("*.json"))
 PLACE = re.compile(r"\{\d+\}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_language_says_everything_and_nothing_else(language):
     here, said = messages(language), set(spoken())

@@ -69,6 +69,7 @@ def test_least_preload_just_holds_the_floor(seed: int) -> None:
     assert held == pytest.approx(floor) if preload > 0.0 else held >= floor
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", [0.0, 0.4])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_jump_speed_is_the_first_at_which_contact_is_lost(seed: int, damping: float) -> None:

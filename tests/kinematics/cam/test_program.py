@@ -199,6 +199,7 @@ def test_roots_of_a_wave() -> None:
     assert len(find_roots(lambda x: 2.0 + x, np.array([0.0, 1.0]))) == 0
 
 
+@pytest.mark.slow
 def test_a_function_that_is_rounding_is_not_halved_for_ever() -> None:
     asked = 0
 

@@ -45,6 +45,7 @@ def test_drive_and_shaking_are_those_of_energy_and_momentum(mechanism: Mechanism
     assert all(np.isnan(torque).all() != minimum_norm for torque in found.gears)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(DYADIC | CHAIN, ["slider-crank", "geared fivebar", *list(CHAIN)[:1]]))
 def test_link_that_is_there_twice_changes_no_motion_and_no_unique_force(name: str) -> None:
     """A copy without mass on the first two joints of a link, over a full turn or from toggle to toggle."""

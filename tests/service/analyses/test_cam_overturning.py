@@ -83,6 +83,7 @@ def test_a_face_has_the_offset_of_the_least_moment(client: httpx.Client) -> None
     ]
 
 
+@pytest.mark.slow
 def test_with_a_free_spring_the_moment_is_that_of_the_chosen_one(client: httpx.Client) -> None:
     dynamics = {"mass": 0.5, "spring_rate": "free", "max_rpm": 700.0, "least_force": 5.0}
     first = designed(client, dynamics, follower=ROLLER)
@@ -92,6 +93,7 @@ def test_with_a_free_spring_the_moment_is_that_of_the_chosen_one(client: httpx.C
     assert design["metrics"]["forces"] == first["metrics"]["forces"]
 
 
+@pytest.mark.slow
 def test_the_slide_of_a_face_is_drawn_at_its_offset(client: httpx.Client) -> None:
     files = []
     for offset in (0.0, 9.0):

@@ -37,6 +37,7 @@ def pair_of(mechanism: dict[str, Any], gears: list[str]) -> dict[str, Any]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arrangement", ["simple", "wolfrom"])
 @pytest.mark.parametrize("angle", [15.0, 20.0])
 def test_every_mesh_is_told_as_the_analysis_of_its_pair_has_it(

@@ -68,6 +68,7 @@ def test_every_operation_needs_a_key(shared):
             assert answer.json()["type"] == "/problems/unauthorized"
 
 
+@pytest.mark.slow
 def test_a_body_is_not_read_for_nobody(shared):
     host, port = shared.url.removeprefix("http://").split(":")
     with socket.create_connection((host, int(port)), timeout=10) as raw:
@@ -77,6 +78,7 @@ def test_a_body_is_not_read_for_nobody(shared):
         assert raw.recv(65536).startswith(b"HTTP/1.1 401 ")
 
 
+@pytest.mark.slow
 def test_with_a_key_any_host_is_right(shared):
     assert shared.clients["acme"].get("/v1/jobs", headers={"Host": "mechanisms.com"}).status_code == 200
 
@@ -90,6 +92,7 @@ def test_the_document_asks_for_keys_where_there_are_some(shared):
         assert [operation.get("security") for operation in methods.values()] == [asked] * len(methods)
 
 
+@pytest.mark.slow
 def test_what_is_open_stays_open(shared):
     for path in ("/healthz", "/readyz", "/metrics", "/docs", "/openapi.json"):
         assert httpx.get(shared.url + path).status_code == 200
@@ -113,6 +116,7 @@ def test_another_tenants_job_is_like_none(shared):
         assert own.status_code in (200, 202, 204) or no_design, (method, path)
 
 
+@pytest.mark.slow
 def test_another_tenants_running_job_is_not_cancelled(shared):
     gate = shared.folder / "open"
     gate.unlink(missing_ok=True)
@@ -142,6 +146,7 @@ def test_lists_are_of_ones_own_jobs(shared):
                 assert not created[other] & listed
 
 
+@pytest.mark.slow
 def test_a_cursor_of_another_tenant_shows_nothing_of_it(shared):
     ours, theirs = shared.clients["acme"], shared.clients["globex"]
     for client in (ours, theirs, ours, theirs):
@@ -152,6 +157,7 @@ def test_a_cursor_of_another_tenant_shows_nothing_of_it(shared):
     assert with_ours <= own
 
 
+@pytest.mark.slow
 def test_idempotency_keys_are_ones_own(shared):
     ours, theirs = shared.clients["acme"], shared.clients["globex"]
     first = post(ours, **{"Idempotency-Key": "same"}).json()
@@ -163,6 +169,7 @@ def test_idempotency_keys_are_ones_own(shared):
     assert post(ours, **{"Idempotency-Key": "same"}).json()["id"] == first["id"]
 
 
+@pytest.mark.slow
 def test_a_key_is_in_no_log_no_metric_and_no_file(shared):
     for key in shared.keys.values():
         for where in (shared.log(), httpx.get(f"{shared.url}/metrics").text):
@@ -224,6 +231,7 @@ def test_a_key_has_its_rate(tmp_path):
         assert server.stop() == 0
 
 
+@pytest.mark.slow
 def test_web_pages_of_named_origins_may_use_it(shared):
     asked = {
         "Origin": ORIGIN,

@@ -320,6 +320,7 @@ def test_another_media_type(client):
     assert answer.status_code == 415
 
 
+@pytest.mark.slow
 def test_a_class_iii_mechanism_is_analysed_beside_other_requests(server, client):
     """Long analyses take no thread from the requests to the job store."""
     from concurrent.futures import ThreadPoolExecutor

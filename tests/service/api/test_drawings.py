@@ -35,6 +35,7 @@ FILES = [(kind, form) for kind in LINKAGES for form in ("svg", "gif") if (kind, 
 """The sheet of a fourbar is drawn from its dimensions alone."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "form"), FILES)
 def test_a_design_beyond_what_can_be_stated_is_not_drawn_but_said_to_be_so(server, kind, form):
     found = server.post(problem=get_first_example(kind), wait=30)

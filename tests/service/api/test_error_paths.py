@@ -124,7 +124,7 @@ def test_of_an_analysis(asked, family):
     ],
     ids=["tagged", "missing", "unknown", "one of several", "like a tag"],
 )
-def test_a_path_has_no_step_that_is_not_in_the_body(asked, kind, change, path):
+def test_a_path_has_no_step_that_is_not_in_the_body(scripted, kind, change, path):
     body = {"problem": copy.deepcopy(list_examples(kind)[0])}
     change(body["problem"])
-    assert path in [fault["path"] for fault in asked.post("/v1/jobs", json=body).json()["errors"]]
+    assert path in [fault["path"] for fault in scripted.client.post("/v1/jobs", json=body).json()["errors"]]

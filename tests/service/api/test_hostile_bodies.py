@@ -56,6 +56,7 @@ def test_what_is_large(client, name):
     assert len(json.dumps(problem)) < 20_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_every_field_of_every_kind_spoilt(client, kind):
     bodies = dict(hostile.of_kind(kind))

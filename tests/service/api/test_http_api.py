@@ -93,6 +93,7 @@ def test_a_service_without_keys_answers_to_no_other_name(client, host):
     assert client.get("/healthz", headers={"Host": host}).status_code == 200
 
 
+@pytest.mark.slow
 def test_every_kind_is_listed_with_an_example_that_runs(client):
     kinds = client.get("/v1/problems").json()["problems"]
     assert [kind["kind"] for kind in kinds] == list(KINDS)
@@ -105,6 +106,7 @@ def test_every_kind_is_listed_with_an_example_that_runs(client):
         assert job["result"]["designs"]
 
 
+@pytest.mark.slow
 def test_the_reference_needs_no_other_host(client):
     page = client.get("/docs").text
     links = re.findall(r'(?:src|href)="([^"]+)"', page)

@@ -33,6 +33,7 @@ def test_who_imports_waits_for_another_import(work) -> None:
     assert not thread.is_alive()
 
 
+@pytest.mark.slow
 def test_who_only_offers_files_loads_no_drawing_library() -> None:
     offered = (
         "import sys; from service.render import list_forms; from synthesis.registry import KINDS; "

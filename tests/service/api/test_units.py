@@ -215,6 +215,7 @@ def test_a_field_that_says_its_unit_has_the_dimension(kind):
     assert seen > 3
 
 
+@pytest.mark.slow
 def test_every_number_has_a_dimension_or_is_known_to_be_pure():
     found = {}
     for kind in KINDS:

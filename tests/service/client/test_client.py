@@ -109,6 +109,7 @@ def test_a_wait_is_given_up_from_another_thread(ours, scripted):
     assert scripted.job(failed.value.job.id)["status"] == "cancelled"
 
 
+@pytest.mark.slow
 def test_who_is_told_how_far_a_job_is_may_give_it_up(ours, scripted):
     class GivenUp(Exception):
         pass

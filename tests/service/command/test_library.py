@@ -29,6 +29,7 @@ def stated(seed):
     return {**PROBLEM, "seed": seed}
 
 
+@pytest.mark.slow
 def test_a_service_and_this_process_give_one_answer(server):
     told = []
     with Client(server.url) as client:

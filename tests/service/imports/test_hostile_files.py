@@ -131,6 +131,7 @@ def test_a_hostile_file_is_refused_soon_or_read(client, what):
     assert client.get("/healthz").status_code == 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "word"),
     [

@@ -60,6 +60,7 @@ T = np.linspace(0.0, 1.0, 2001)
 # Drawings.
 
 
+@pytest.mark.slow
 def test_an_open_curve_of_an_svg_in_the_unit_that_is_asked_for(client):
     drawing = page(
         '<g transform="translate(5 0)"><path id="way" d="M10 90 C20 40 60 40 70 80"/></g>',
@@ -163,6 +164,7 @@ def test_ends_that_nearly_meet_are_one_point_and_small_steps_within_a_curve_stay
     assert fine["length"] == pytest.approx(0.099 * math.sqrt(2))
 
 
+@pytest.mark.slow
 def test_any_curve_lies_within_its_tolerance(client):
     rng = np.random.default_rng(7)
     for trial in range(40):
@@ -494,6 +496,7 @@ def tabulated(points):
     ]
 
 
+@pytest.mark.slow
 def test_an_imported_table_is_the_motion_of_a_follower(client):
     angle = np.linspace(0.0, 360.0, 37)
     lift = 10.0 - 10.0 * np.cos(np.radians(angle)) + 2.0 * np.sin(2.0 * np.radians(angle)) ** 2

@@ -42,6 +42,7 @@ def test_the_units_and_the_page_of_an_svg(client):
         assert other["tolerance"] == pytest.approx(factor * own["tolerance"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("attributes", "millimetres", "low"),
     [
@@ -89,6 +90,7 @@ def test_shapes_of_an_svg(client, shape):
     assert len(coarse["polygon"]) <= len(outline["polygon"])
 
 
+@pytest.mark.slow
 def test_a_curve_lies_within_the_tolerance_and_not_in_more_points_than_it_takes(client):
     for tolerance in (1.0, 0.1, 0.01, 0.003):
         answer = found(client, page('<ellipse rx="300" ry="100" transform="rotate(30)"/>'), tolerance=tolerance)
@@ -293,6 +295,7 @@ def test_a_long_polyline_is_thinned_within_the_tolerance(client):
     assert max(ring.distance(shapely.Point(100 * math.cos(t), 60 * math.sin(t))) for t in way) <= 0.05
 
 
+@pytest.mark.slow
 def test_it_answers_the_same_again_and_as_a_statement_takes_it(client):
     drawing = page('<circle r="20" cx="50" cy="-400"/><rect x="200" y="-420" width="30" height="30" rx="9"/>')
     answer = found(client, drawing)

@@ -32,6 +32,7 @@ def test_what_is_wrong_with_the_problem_itself_is_told_at_once(varied):
     assert refusal.type == "/problems/invalid-problem"
 
 
+@pytest.mark.slow
 def test_faults_beside_a_varied_field_are_looked_for_no_longer_than_may_be():
     """These could go by its value, so that other samples are looked at as well."""
     problem = {**MOTION, "constraints": {f"q{k}": 1 for k in range(9000)}}

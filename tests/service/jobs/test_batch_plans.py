@@ -74,6 +74,7 @@ def test_each_part_of_a_range_has_its_sample():
     assert sample_latin_hypercube([Span(-2.0, 6.0)], 16, 6)[0] != ranges
 
 
+@pytest.mark.slow
 def test_ids_of_samples_are_none_that_are_made_in_the_same_millisecond():
     """These follow one another: the batch, its shares, the next batch, a job."""
     first = ULID.from_str("01K6WM2B7Q3W9Z0V5N8XJ4R1TZ")
@@ -84,6 +85,7 @@ def test_ids_of_samples_are_none_that_are_made_in_the_same_millisecond():
     assert {ULID.from_str(found).milliseconds for found in ids} == {first.milliseconds}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_equal_problems_have_one_digest(kind, monkeypatch):
     problem = parse_problem(get_first_example(kind))
@@ -149,6 +151,7 @@ def test_a_front_is_what_no_other_beats():
     assert find_unbeaten(np.empty((0, 2))) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [2, 4])
 def test_the_front_of_the_largest_batch_takes_no_seconds(columns):
     """All rows are in it, which takes the longest: compared one by one they would take more than a second."""

@@ -265,6 +265,7 @@ async def begun(poller, job):
     return following
 
 
+@pytest.mark.slow
 def test_the_store_is_read_once_for_all_listeners(store):
     job = new_job(store)
 
@@ -305,6 +306,7 @@ def test_the_listeners_of_a_tenant_leave_room_for_others(store, monkeypatch):
     assert (refused.status, heard.status_code) == (503, 200)
 
 
+@pytest.mark.slow
 def test_the_store_is_not_read_for_nobody(store):
     job = new_job(store)
     store.cancel(job.id)

@@ -201,11 +201,11 @@ def test_a_job_that_takes_too_much_memory_fails(server):
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
-def test_a_defect_of_the_solver_fails_the_job_and_is_not_shown(server):
-    job = server.post(BROKEN, wait=20)
+def test_a_defect_of_the_solver_fails_the_job_and_is_not_shown(scripted):
+    job = scripted.post(BROKEN, wait=20)
     assert (job["status"], job["error"]["type"]) == ("failed", "/problems/internal-error")
     assert "secret" not in str(job)
-    assert "secret" in server.log(), "the log is where the defect must be found"
+    assert "secret" in scripted.log(), "the log is where the defect must be found"
 
 
 @pytest.mark.slow
@@ -242,42 +242,43 @@ def test_a_change_for_a_closed_loop_is_dropped():
     notifier.publish("job")
 
 
-def test_progress_is_seen_while_the_job_runs(server):
-    gate = server.folder / "open"
+@pytest.mark.slow
+def test_progress_is_seen_while_the_job_runs(scripted):
+    gate = scripted.folder / "open"
     gate.unlink(missing_ok=True)
-    job = server.post(STEPS)
-    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, 5.0)
-    began, writes = time.monotonic(), stored(server.folder, job["id"], "revision")
+    job = scripted.post(STEPS)
+    until(lambda: scripted.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, 5.0)
+    began, writes = time.monotonic(), stored(scripted.folder, job["id"], "revision")
     time.sleep(1.0)  # a rate is measured over a time
-    writes = stored(server.folder, job["id"], "revision") - writes
+    writes = stored(scripted.folder, job["id"], "revision") - writes
     assert writes <= 1 + (time.monotonic() - began) / PERIOD_S
     gate.touch()
-    assert server.reaches(job["id"], "succeeded")["progress"]["fraction"] == 1.0
+    assert scripted.reaches(job["id"], "succeeded")["progress"]["fraction"] == 1.0
 
 
-def test_the_last_report_before_a_long_time_is_told(server):
+def test_the_last_report_before_a_long_time_is_told(scripted):
     """However soon it came after the start, or after another report."""
-    gate = server.folder / "open"
+    gate = scripted.folder / "open"
     gate.unlink(missing_ok=True)
-    job = server.post(GATED)
-    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.1, "message": "waiting"}, SOON_S)
+    job = scripted.post(GATED)
+    until(lambda: scripted.job(job["id"])["progress"] == {"fraction": 0.1, "message": "waiting"}, SOON_S)
     gate.touch()
-    server.reaches(job["id"], "succeeded")
+    scripted.reaches(job["id"], "succeeded")
 
 
-def test_cancelling_at_any_moment_leaves_one_end(server):
+def test_cancelling_at_any_moment_leaves_one_end(scripted):
     """Jobs that end by themselves while they are being cancelled: each ends once, as one or the other."""
     for pause in (0.0, 0.001, 0.002, 0.003, 0.005, 0.008):
-        job = server.post(INSTANT)
+        job = scripted.post(INSTANT)
         time.sleep(pause)  # the moment is what is varied
-        answer = server.client.delete(f"/v1/jobs/{job['id']}")
+        answer = scripted.client.delete(f"/v1/jobs/{job['id']}")
         assert answer.status_code in (202, 204)
         if answer.status_code == 204:
-            assert server.client.get(f"/v1/jobs/{job['id']}").status_code == 404
+            assert scripted.client.get(f"/v1/jobs/{job['id']}").status_code == 404
         else:
             assert answer.json()["status"] in ("cancelled", "succeeded")
-            assert server.job(job["id"]) == answer.json()
-    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+            assert scripted.job(job["id"]) == answer.json()
+    assert scripted.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
 @pytest.mark.slow

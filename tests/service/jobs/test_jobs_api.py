@@ -41,6 +41,7 @@ def test_a_job_is_accepted_and_found_again(server, client):
     assert finished["id"] == job["id"]
 
 
+@pytest.mark.slow
 def test_waiting_gives_the_finished_job(client):
     answer = client.post("/v1/jobs", json={"problem": SOLVED}, headers={"Prefer": "wait=30"})
     assert answer.status_code == 200
@@ -49,6 +50,7 @@ def test_waiting_gives_the_finished_job(client):
     assert answer.json()["status"] == "succeeded"
 
 
+@pytest.mark.slow
 def test_a_wait_ends_with_the_job(server):
     began = time.perf_counter()
     for _ in range(10):
@@ -163,6 +165,7 @@ def test_a_design_of_an_unfinished_job(scripted, what):
     assert (after.status_code, after.json()["detail"]) == (409, "The job is cancelled and has no result.")
 
 
+@pytest.mark.slow
 def test_a_job_that_has_not_changed_is_not_sent_again(scripted):
     (scripted.folder / "open").unlink(missing_ok=True)
     job = scripted.post(GATED)
@@ -186,6 +189,7 @@ def test_a_tag_of_another_state_or_none_gives_the_job(client, solved, known):
     assert answer.status_code == 200
 
 
+@pytest.mark.slow
 def test_jobs_are_listed_page_by_page(server, client):
     ids = [server.post(problem=SOLVED, wait=30, label=f"page {n}")["id"] for n in range(5)]
     seen, cursor = [], None

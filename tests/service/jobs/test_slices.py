@@ -100,6 +100,7 @@ def test_a_contradiction_that_only_the_solver_sees_fails_its_sample(bench):
     assert [fault["path"].startswith("/linkage") for fault in told["errors"]] == [True]
 
 
+@pytest.mark.slow
 def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
     solver.raises = {1: ContradictionError(Contradiction("/seed", "no")), 2: ValueError(), 3: RecursionError()}
     broken_for(monkeypatch, slices.hash_problem, lambda problem: problem.seed == 5)

@@ -49,6 +49,7 @@ def cost_for(turns, seat, free_since=None):
     return None if claim is None else claim.cost
 
 
+@pytest.mark.slow
 def test_a_lane_is_kept_for_short_jobs(store):
     made(store, Cost.LONG, 3)
     seats = [Seat(), Seat(), Seat()]
@@ -62,6 +63,7 @@ def test_a_lane_is_kept_for_short_jobs(store):
     assert cost_for(turns, seats[2], free_since=0.0) is None, "however long it has been idle"
 
 
+@pytest.mark.slow
 def test_a_flood_leaves_the_last_lane_to_other_tenants(store):
     made(store, Cost.SHORT, 9, "flood")
     seats = [Seat(), Seat(), Seat()]
@@ -75,6 +77,7 @@ def test_a_flood_leaves_the_last_lane_to_other_tenants(store):
     assert cost_for(turns, seats[0]) == Cost.SHORT, "another one is free"
 
 
+@pytest.mark.slow
 def test_a_tenant_whose_jobs_turn_out_to_be_long_gets_the_last_lane(store):
     made(store, Cost.SHORT, 3)
     seats = [Seat(), Seat(), Seat()]
@@ -105,6 +108,7 @@ def test_short_and_long_jobs_alternate_where_lanes_are_free_for_both(store):
     assert given == [Cost.SHORT, Cost.LONG] * 3
 
 
+@pytest.mark.slow
 def test_the_last_worker_that_is_ready_is_not_given_to_a_long_job(store):
     """Others are being started again, one after the other: clients cancel what they post."""
     made(store, Cost.LONG)
@@ -164,6 +168,7 @@ def test_a_free_lane_hears_of_a_job_at_once(store, monkeypatch):
     assert taken[0] - told < 0.5 * ASK_PERIOD_S
 
 
+@pytest.mark.slow
 def test_a_job_of_which_nobody_tells_is_found(store):
     seats = [Seat()]
     turns = opened(store, seats, 1)
@@ -172,6 +177,7 @@ def test_a_job_of_which_nobody_tells_is_found(store):
     assert cost_for(turns, seats[0]) == Cost.SHORT
 
 
+@pytest.mark.slow
 def test_nothing_is_given_out_before_the_store_is_in_order_or_after_the_end(store):
     made(store, Cost.SHORT, 2)
     seats = [Seat()]
@@ -183,6 +189,7 @@ def test_nothing_is_given_out_before_the_store_is_in_order_or_after_the_end(stor
     assert cost_for(turns, seats[0]) is None
 
 
+@pytest.mark.slow
 def test_a_job_that_was_given_while_the_store_broke_off_is_not_forgotten(store, monkeypatch):
     [job] = made(store, Cost.SHORT)
     seats = [Seat()]

@@ -254,6 +254,7 @@ def test_a_fourbar_shakes_neither_by_force_nor_by_moment(client: httpx.Client, c
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [2, 3])
 def test_what_is_balanced_goes_to_an_analysis_as_it_is(client: httpx.Client, n: int) -> None:
     problem = list_examples("balancing")[n]
@@ -326,6 +327,7 @@ def test_what_contradicts_itself_of_a_linkage_is_refused_by_its_field(client: ht
     assert {error["path"] for error in answer.json()["errors"]} == {f"/problem{path}"}
 
 
+@pytest.mark.slow
 def test_the_best_weights_are_measured_as_they_are_promised(client: httpx.Client) -> None:
     """Peaks of an analysis of the answer, before and after, weighed as the objective says, are its value."""
     problem = list_examples("balancing")[4]

@@ -82,6 +82,7 @@ def test_a_groove_is_drawn_with_both_walls(client):
     assert "outer_wall_x [mm]" in client.get(f"{place}.csv").text
 
 
+@pytest.mark.slow
 def test_a_convex_program_tells_its_progress_and_is_cancelled(server):
     """Motion and size of 24 optimal segments together: some programs of thousands of variables, one after the other."""
     segments = [

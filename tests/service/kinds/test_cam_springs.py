@@ -14,6 +14,7 @@ from tests.support.service.cam_springs import Statement, check, designed, refuse
 LAWS = {"345": "polynomial_345", "4567": "polynomial_4567", "modsine": "modified_sine"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", cases("cam_spring", "dynamics"))
 def test_springs_of_norton(client: httpx.Client, case: Case) -> None:
     x = case.inputs or {}
@@ -36,6 +37,7 @@ def test_springs_of_norton(client: httpx.Client, case: Case) -> None:
     case.check(**found)
 
 
+@pytest.mark.slow
 def test_a_free_spring_presses_less_than_any_that_is_stated(client: httpx.Client) -> None:
     dynamics = {"mass": 0.5, "damping_ratio": 0.05, "least_force": 15.0, "max_rpm": 720.0}
     design = designed(client, {**dynamics, "spring_rate": "free"})
@@ -56,6 +58,7 @@ def test_a_free_spring_presses_less_than_any_that_is_stated(client: httpx.Client
     assert same["metrics"]["forces"]["least_preload"] == pytest.approx(forces["preload"])
 
 
+@pytest.mark.slow
 def test_a_range_and_a_frequency_bind(client: httpx.Client) -> None:
     ranged = designed(client, {"mass": 0.5, "spring_rate": {"min": 8.0, "max": 20.0}})["metrics"]["forces"]
     assert (ranged["spring_rate"], "spring_rate/min" in ranged["spring"]["binding"]) == (8.0, True)
@@ -70,6 +73,7 @@ def test_a_range_and_a_frequency_bind(client: httpx.Client) -> None:
     assert not check(stated, "frequency_ratio")["passed"]
 
 
+@pytest.mark.slow
 def test_contact_is_kept_up_to_the_greatest_speed(client: httpx.Client) -> None:
     dynamics = {"mass": 0.5, "spring_rate": 6.0, "preload": 10.0}
     slow = designed(client, dynamics)
@@ -81,6 +85,7 @@ def test_contact_is_kept_up_to_the_greatest_speed(client: httpx.Client) -> None:
     assert fast["metrics"]["forces"]["over_speeds"]["rpm"] == pytest.approx(1.01 * jump)
 
 
+@pytest.mark.slow
 def test_a_stated_preload_that_is_too_small_fails_by_name(client: httpx.Client) -> None:
     lost = designed(client, {"mass": 0.5, "spring_rate": 6.0, "preload": 10.0, "least_force": 12.0})
     assert not check(lost, "contact_force")["passed"]
@@ -139,6 +144,7 @@ def test_what_is_refused(client: httpx.Client, dynamics: Statement, changes: Sta
     assert any(found.startswith(f"/problem{path}") for found in paths), paths
 
 
+@pytest.mark.slow
 def test_optimal_motions_by_another_criterion_take_a_free_spring(client: httpx.Client) -> None:
     dynamics = {"mass": 0.5, "spring_rate": "free", "least_force": 5.0, "max_rpm": 650.0}
     design = designed(client, dynamics, segments=SOUGHT, limits={"jerk": 3000.0})

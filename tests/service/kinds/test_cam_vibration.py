@@ -39,6 +39,7 @@ def test_a_soft_train_is_warned_of(client: httpx.Client) -> None:
     assert damped["train"]["residual_amplitude"] < soft["train"]["residual_amplitude"]
 
 
+@pytest.mark.slow
 def test_the_contact_force_is_that_of_an_integrated_follower(client: httpx.Client) -> None:
     """Forty turns from rest, damped enough to have settled, by a Runge-Kutta method on the table of the answer."""
     stiffness, ratio = 150.0, 0.2

@@ -28,6 +28,7 @@ def solved(client: httpx.Client, **changes: Any) -> tuple[Any, str]:
     return job["result"], job["id"]
 
 
+@pytest.mark.slow
 def test_a_design_carries_its_power_when_it_is_posted_back(client: httpx.Client) -> None:
     result, job = solved(client)
     design = result["designs"][0]
@@ -52,6 +53,7 @@ def test_a_design_carries_its_power_when_it_is_posted_back(client: httpx.Client)
     assert "face width, a first estimate" in sheet
 
 
+@pytest.mark.slow
 def test_with_other_demands(client: httpx.Client) -> None:
     """Each demand is kept with those before it."""
     stated: Statement = {}
@@ -80,6 +82,7 @@ def test_with_other_demands(client: httpx.Client) -> None:
 STOCK = [18, 20, 24, 24, 30, {"teeth": 36, "count": 2}, 60, 72, 80]
 
 
+@pytest.mark.slow
 def test_from_a_stock(client: httpx.Client) -> None:
     stated = {"teeth": None, "stock": STOCK, "tolerance": 0.02}
     result, _ = solved(client, **stated)
@@ -119,6 +122,7 @@ def test_shifted_teeth_at_a_distance(client: httpx.Client) -> None:
     assert wide != narrow
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hunting", further(["prefer", "require"], ["require"]))
 def test_teeth_that_hunt(client: httpx.Client, hunting: str) -> None:
     """Of trains that carry as well those that hunt come first, or alone."""
@@ -144,6 +148,7 @@ def test_the_smallest_that_carries(client: httpx.Client) -> None:
     assert heavy["designs"][0]["metrics"]["total_teeth"] > teeth[0], "the smallest does not carry this"
 
 
+@pytest.mark.slow
 def test_inches_are_inches(client: httpx.Client) -> None:
     metric, _ = solved(client, modules=[2.54], max_designs=1)
     inches, _ = solved(client, modules=[0.1], max_designs=1, length_unit="in")

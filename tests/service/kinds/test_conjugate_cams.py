@@ -33,6 +33,7 @@ def pair(client: httpx.Client, changes: Answer, **more: Any) -> Answer:
     return designed(client, {"mass": 0.5}, closure="conjugate", **changes, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", FOLLOWERS, ids=["slide", "slide, clockwise", "arm", "arm of the other sense"])
 def test_the_rollers_stand_where_a_rigid_follower_carries_them(client: httpx.Client, changes: Answer) -> None:
     design = pair(client, changes)
@@ -60,6 +61,7 @@ def test_the_rollers_stand_where_a_rigid_follower_carries_them(client: httpx.Cli
     assert min(nearest) >= radius * (1.0 - 1e-3)
 
 
+@pytest.mark.slow
 def test_limits_hold_for_the_second_cam_as_for_the_first(client: httpx.Client) -> None:
     wide = pair(client, {"follower": SLIDE})
     tight = pair(client, {"follower": SLIDE}, limits={"pressure_angle": 20.0, "hub_radius": 60.0})
@@ -86,6 +88,7 @@ def _tangents(second: Answer) -> np.ndarray:
     return np.asarray(normal / along * np.sign((normal / along).real))
 
 
+@pytest.mark.slow
 def test_the_cam_that_pushes_is_the_one_the_force_asks_for(client: httpx.Client) -> None:
     forces = pair(client, {"follower": SLIDE})["metrics"]["forces"]
     # Without a spring the acceleration alone decides: the first pushes while it is positive.

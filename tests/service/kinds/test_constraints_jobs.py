@@ -39,6 +39,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", QUICK)
 def test_constraints_stand_in_the_answer(server, kind):
     job = finished(server.client, {**QUICK[kind], "constraints": STATED})

@@ -60,6 +60,7 @@ def only(client: httpx.Client, problem: Statement) -> Any:
     return design
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", cases("engine_layout", "dynamics"))
 def test_harmonics_of_the_books_engines(client: httpx.Client, case: Case) -> None:
     given: dict[str, Any] = case.inputs or {}
@@ -261,6 +262,7 @@ def test_weights_on_the_crankshaft(client: httpx.Client, case: Case) -> None:
     )
 
 
+@pytest.mark.slow
 def test_arrangements_are_found_and_the_best_is_drawn(client: httpx.Client) -> None:
     job = finished(client, list_examples("engine")[1])
     result = job["result"]
@@ -315,6 +317,7 @@ def second_harmonics(client: httpx.Client, pair: Any, weight: float, height: flo
     return float(abs(orders[0][2]) + abs(orders[0][-2])), 2.0 * float(abs(orders[1][2]))
 
 
+@pytest.mark.slow
 def test_balance_shafts_are_driven_as_geared_bodies(client: httpx.Client) -> None:
     """The second harmonic of the force goes; that of the roll too, up to A₂/λ − 1, with Nakamura's height alone."""
     (design,) = finished(client, get_first_example("engine"))["result"]["designs"]

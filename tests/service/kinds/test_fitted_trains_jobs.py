@@ -61,6 +61,7 @@ def test_demands_together(client: httpx.Client) -> None:
     assert len({str(one) for one in best}) >= 4
 
 
+@pytest.mark.slow
 def test_the_drawing_shows_shifted_teeth_in_mesh(client: httpx.Client) -> None:
     found, job = designs(client, max_designs=1)
     place = f"/v1/jobs/{job}/designs/0"

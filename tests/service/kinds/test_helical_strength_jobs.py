@@ -28,6 +28,7 @@ def best(client: httpx.Client, **changes: Any) -> Any:
     return job["result"]["designs"][0]
 
 
+@pytest.mark.slow
 def test_a_helical_stage_carries_its_power_when_it_is_posted_back(client: httpx.Client) -> None:
     design = best(client)
     stages = design["mechanism"]["stages"]
@@ -47,6 +48,7 @@ def test_a_helical_stage_carries_its_power_when_it_is_posted_back(client: httpx.
     assert [("sharing_ratio" in told) for told in design["metrics"]["strength"]] == [True, False]
 
 
+@pytest.mark.slow
 def test_the_helix_and_its_factors_count(client: httpx.Client) -> None:
     def made(**changes: Any) -> Any:
         return [(stage["module"], stage["face_width"]) for stage in best(client, **changes)["mechanism"]["stages"]]

@@ -32,6 +32,7 @@ GENEVA = [one for one in list_examples("indexing") if one["drive"] != "ratchet" 
 RATCHET = next(one for one in list_examples("indexing") if one["drive"] == "ratchet")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("example", further(GENEVA, GENEVA[2:3]), ids=lambda one: f"{one['drive']} {one['stations']}")
 def test_every_drive_is_drawn_and_moves(client: httpx.Client, example: Statement) -> None:
     job = finished(client, example)
@@ -111,6 +112,7 @@ def test_a_drive_of_four_stations_as_textbooks_have_it(client: httpx.Client) -> 
     assert design["mechanism"]["crank_radius"] == pytest.approx(100.0 / math.sqrt(2.0))
 
 
+@pytest.mark.slow
 def test_demands_together(client: httpx.Client) -> None:
     demands = {"dwell_share": {"min": 0.3, "max": 0.6}, "pin_force": 50.0, "drive_torque": 20.0, "size": 800.0}
     wanted = indexing(load_inertia=0.02, load_torque=1.0, wheel_shaft_diameter=20.0, constraints=demands)
@@ -152,6 +154,7 @@ def test_a_drive_is_analysed(client: httpx.Client) -> None:
     assert [error["path"] for error in refused.json()["errors"]] == ["/mechanism/crank_radius"]
 
 
+@pytest.mark.slow
 def test_a_ratchet_is_found_drawn_and_moves(client: httpx.Client) -> None:
     wanted = RATCHET | {"pawls": {"friction": 0.2, "overlap": 2}, "constraints": {"pin_force": 500.0, "size": 120.0}}
     job = finished(client, wanted)

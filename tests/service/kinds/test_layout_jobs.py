@@ -29,6 +29,7 @@ def layouts(client, problem, **changes):
     return [design["layout"] for design in job["result"]["designs"]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("problem", "width"),
     [(MOTION, 5.0), (QUICK_RETURN, 0.05), (STEERING, 60.0), (DWELL, 1.5)],
@@ -118,6 +119,7 @@ RANKED = {
 """Problems whose designs take different numbers of planes, or cannot all be built, and the width of their links."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("problem", "width"), RANKED.values(), ids=RANKED)
 def test_fewest_planes_first(client, problem, width):
     """The designs are those of the usual order, those in as many planes in that order; fewer are the first of them."""

@@ -211,6 +211,7 @@ def test_beside_a_room_planes_and_constraints(client):
     assert [gap["check"] for gap in none["nearest_miss"]["gaps"]] == ["transmission_angle"]
 
 
+@pytest.mark.slow
 def test_play_is_told_at_every_target_and_grows_with_the_clearance(client):
     one, two = (
         made(client, MOTION, {"tolerances": {"pin_clearance": clearance}})["designs"][0] for clearance in (0.001, 0.002)
@@ -364,6 +365,7 @@ def test_a_client_checks_its_own_rounding(client, design):
     assert "yield" not in bare
 
 
+@pytest.mark.slow
 def test_points_and_outputs_are_targets_too(client):
     path = finished(client, {**PATH, "max_designs": 1})["result"]["designs"][0]
     points = [{"x": point["x"], "y": point["y"]} for point in PATH["points"]]

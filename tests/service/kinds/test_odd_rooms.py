@@ -26,6 +26,7 @@ def problem_of(kind, **more):
     return {**copy.deepcopy(list_examples(kind)[SOON.get(kind, 0)]), **more}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", LINKAGES)
 def test_a_room_that_cannot_be_is_refused_at_its_field(client, kind):
     problem = problem_of(kind)

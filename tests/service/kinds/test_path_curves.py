@@ -62,6 +62,7 @@ def test_what_no_curve_match_can_keep_is_refused_with_its_place(client):
     assert "/problem/points" in [error["path"] for error in refused.json()["errors"]]
 
 
+@pytest.mark.slow
 def test_a_geared_fivebar_is_fitted_drawn_and_driven(server, client):
     """The curve of a linkage of gear ratio −1: its design comes back, and its motion passes the points."""
     points = [

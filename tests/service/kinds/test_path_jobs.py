@@ -65,6 +65,7 @@ NINE_POINTS = [
 ]
 
 
+@pytest.mark.slow
 def test_a_nine_point_search_tells_its_progress_and_is_cancelled(server):
     """The search takes seconds, nearly all of them in compiled code."""
 

@@ -207,6 +207,7 @@ def test_a_class_that_one_of_the_types_can_have_is_not_refused(client):
     assert client.post("/v1/jobs", json={"problem": problem}).status_code == 202
 
 
+@pytest.mark.slow
 def test_the_cycle_of_a_given_linkage_that_comes_back_in_two_turns_is_both(client):
     """Its crank meets no toggle, but link 4 is elsewhere after one turn."""
     mechanism = built(np.array(ELSEWHERE))

@@ -72,6 +72,7 @@ def test_without_strength_nothing_of_it_is_told(client: httpx.Client) -> None:
     assert "strength" not in result["designs"][0]["metrics"]["meshes"][0]
 
 
+@pytest.mark.slow
 def test_all_arrangements_are_those_of_spur_gears(client: httpx.Client) -> None:
     stated = {"arrangement": "auto", "teeth": {"min": 17, "max": 24, "ring_max": 80}, "ratio": -1.0, "modules": [4.0]}
     members = dict.fromkeys(("input", "output", "fixed"))

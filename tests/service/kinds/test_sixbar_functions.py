@@ -125,6 +125,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 
 
+@pytest.mark.slow
 def test_auto_takes_the_fourbar_where_one_is_precise(client):
     precise = {"function": {"name": "reciprocal", "x": [1.0, 2.0]}, "constraints": {"min_transmission_angle": 10.0}}
     auto = answered(client, mechanisms="auto", **precise)["result"]

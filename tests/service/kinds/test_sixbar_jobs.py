@@ -333,6 +333,7 @@ def test_limits_that_nobody_stated_do_not_exclude_what_is_stated(client, stated)
     assert all(design["metrics"]["reach"] > 5.0 for design in designs)
 
 
+@pytest.mark.slow
 def test_a_chain_gives_a_body_that_only_turns_its_size(client):
     positions = [{"x": 0.0, "y": 0.0, "angle": angle} for angle in (0.0, 30.0, 60.0)]
     designs = passed(answered(client, positions=positions, chain={"fixed_pivot": [100.0, None]}))
@@ -470,6 +471,7 @@ def test_what_cannot_be_had_is_refused_at_its_field(client, changed, path):
     assert any(fault["path"].startswith(path) for fault in answer.json()["errors"]), answer.text
 
 
+@pytest.mark.slow
 def test_positions_without_a_crank_have_no_stephenson_2(client):
     positions = on_a_way(np.random.default_rng(9))
     result = answered(client, positions=positions, mechanisms=["stephenson_2"])["result"]

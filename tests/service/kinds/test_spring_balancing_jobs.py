@@ -62,6 +62,7 @@ def solved(client: httpx.Client, problem: Statement) -> Any:
     return job
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "problem", [LEVER, REAL, BOTH, SOUGHT, TWO_LEVERS], ids=["lever", "real", "both", "sought", "two"]
 )

@@ -19,6 +19,7 @@ def test_the_example_has_linkages_and_gears(job):
     assert all(design["verification"]["passed"] for design in job["result"]["designs"])
 
 
+@pytest.mark.slow
 def test_designs_are_drawn_and_driven(client, job):
     for n, design in enumerate(job["result"]["designs"]):
         place = f"/v1/jobs/{job['id']}/designs/{n}"

@@ -27,6 +27,7 @@ def job(server: Any) -> Any:
     return done
 
 
+@pytest.mark.slow
 def test_the_answer_and_its_files(client: httpx.Client, job: Any) -> None:
     result = job["result"]
     assert result["search"]["complete"]

@@ -67,6 +67,7 @@ def test_a_ring_is_drawn_around_its_pinion_in_mesh(client: httpx.Client) -> None
     assert client.get(f"{place}.gif").content[:6] == b"GIF89a"
 
 
+@pytest.mark.slow
 def test_views_of_shafts_that_are_not_parallel(client: httpx.Client) -> None:
     design, place = design_of(client, CROSSING)
     mesh = design["metrics"]["meshes"][0]

@@ -35,6 +35,7 @@ def grown(server, act):
     return {key: value - before.get(key, 0.0) for key, value in after.items() if value != before.get(key, 0.0)}
 
 
+@pytest.mark.slow
 def test_requests_are_counted_by_operation_method_and_status(server):
     def act():
         server.client.get("/healthz")
@@ -54,6 +55,7 @@ def test_requests_are_counted_by_operation_method_and_status(server):
     assert SECRET.lower() not in str(growth).lower(), "what a client chooses is no label"
 
 
+@pytest.mark.slow
 def test_rejections_are_counted_by_reason(server):
     def act():
         headers = {"Content-Type": "application/json"}
@@ -107,6 +109,7 @@ def test_the_queue_and_the_workers_are_seen(server):
     assert seen[("process_resident_memory_bytes",)] > 1e6
 
 
+@pytest.mark.slow
 def test_listeners_are_counted_until_they_leave(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
@@ -120,6 +123,7 @@ def test_listeners_are_counted_until_they_leave(server):
     gate.touch()
 
 
+@pytest.mark.slow
 def test_openmetrics_where_it_is_accepted(server):
     accept = {"Accept": "application/openmetrics-text; version=1.0.0"}
     answer = server.client.get("/metrics", headers=accept)
@@ -176,6 +180,7 @@ def durations(answer):
     )
 
 
+@pytest.mark.slow
 def test_an_answer_says_where_its_time_went(server):
     body = {"problem": {**PROBLEM, "seed": INSTANT}}
     answer = server.client.post("/v1/jobs", json=body, headers={"Prefer": "wait=20"})
@@ -185,6 +190,7 @@ def test_an_answer_says_where_its_time_went(server):
     assert set(durations(server.client.get("/nope"))) == {"total"}
 
 
+@pytest.mark.slow
 def test_a_request_has_the_id_that_it_came_with_or_a_new_one(server):
     given = server.client.get("/healthz", headers={"X-Request-ID": "abc-1"})
     assert given.headers["x-request-id"] == "abc-1"
@@ -195,6 +201,7 @@ def test_a_request_has_the_id_that_it_came_with_or_a_new_one(server):
         assert re.fullmatch("[0-9A-Z]{26}", answer.headers["x-request-id"])
 
 
+@pytest.mark.slow
 def test_the_log_leads_from_a_request_to_its_job(server):
     body = {"problem": {**PROBLEM, "seed": BROKEN}}
     job = server.client.post("/v1/jobs", json=body, headers={"Prefer": "wait=20", "X-Request-ID": "lead"}).json()
@@ -239,6 +246,7 @@ def test_concurrent_requests_keep_their_ids(server):
         assert logged(n) == 20
 
 
+@pytest.mark.slow
 def test_a_query_is_not_logged(server):
     server.client.get(f"/healthz?key=another-{SECRET}")
     assert f"another-{SECRET}" not in server.log()

@@ -47,6 +47,7 @@ def outline(edge: Any) -> tuple[str, Any]:
     return "loop", sorted(np.abs(np.diff(corners, append=corners[0])))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_the_shapes_are_those_that_are_cut(client: Any, jobs: Any, name: str) -> None:
     answer, files = seen(client, jobs[name], **SIZES), parts(client, place(jobs[name]), **SIZES)
@@ -181,6 +182,7 @@ def test_bad_values_are_refused_by_their_path(client: Any, jobs: Any, field: str
     assert [fault["path"] for fault in answer.json()["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 def test_what_leaves_no_room_is_refused_with_the_scale_that_works(client: Any, jobs: Any) -> None:
     answer = client.get(f"{place(jobs['fourbar'])}/assembly", params={"width": 60})
     (fault,) = answer.json()["errors"]
@@ -260,6 +262,7 @@ def test_the_picture_shows_every_part_twice_and_where_it_is_asked_to(client: Any
     assert [fault["path"] for fault in faults] == ["/query/input_place"]
 
 
+@pytest.mark.slow
 def test_a_report_shows_assemblies_where_they_are_asked_for(client: Any, jobs: Any) -> None:
     """As the picture that is had by itself; what cannot be built is told, and the rest of the report is there."""
     at = f"/v1/jobs/{jobs['fourbar']['id']}/report.html"

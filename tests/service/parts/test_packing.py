@@ -17,6 +17,7 @@ def bytes_of(client, path, **headers):
         return answer, b"".join(answer.iter_raw())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", ["/v1/problems", "/openapi.json"])
 def test_what_is_the_same_for_all_is_packed_and_sent_once(client, path):
     answer, packed = bytes_of(client, path)

@@ -48,6 +48,7 @@ def test_the_zip_has_an_outline_of_each_plate_with_holes_where_the_joints_are(cl
         assert low == pytest.approx(0.0, abs=7.5)
 
 
+@pytest.mark.slow
 def test_the_bill_names_what_is_bought_by_its_standard(client: Any, jobs: Any) -> None:
     rows = bill(parts(client, jobs["fourbar"], **SIZES))
     assert {"base", "link_input", "link_coupler", "link_output"} <= rows.keys()
@@ -162,6 +163,7 @@ def test_there_are_no_parts_of_no_design(client: Any, jobs: Any) -> None:
     assert client.get(f"{jobs['fourbar'][:-1]}7/parts").status_code == 404
 
 
+@pytest.mark.slow
 def test_the_block_of_the_problem_says_what_is_left_out(client: Any) -> None:
     block = {"link_width": 18.0, "pin_diameter": 6.0, "thickness": 7.0, "shafts": "both_sides"}
     job = finished(client, {**MOTION, "layout": block})

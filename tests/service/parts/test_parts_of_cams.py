@@ -88,6 +88,7 @@ def analysed(mechanism: dict[str, Any], points: np.ndarray) -> tuple[np.ndarray,
     return np.array(answer["input_angle"]), np.array(answer["follower"]["position"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(["roller", "arm", "flat", "flat_arm", "conjugate"], ["roller", "flat_arm"]))
 def test_a_follower_on_the_contour_that_is_cut_does_what_the_program_says(client: Any, jobs: Any, name: str) -> None:
     """The analysis lays the follower against points of the drawing's spline."""
@@ -103,6 +104,7 @@ def test_a_follower_on_the_contour_that_is_cut_does_what_the_program_says(client
     assert np.abs(s - expected).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_a_groove_is_wider_than_its_roller_by_the_clearance(client: Any, jobs: Any) -> None:
     place, mechanism = jobs["groove"]
     files = parts(client, place, **SIZES)
@@ -203,6 +205,7 @@ def test_what_means_nothing_here_is_refused_by_its_path(
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(["roller", "external", "ratchet"], ["roller"]))
 def test_too_thick_pins_are_refused_with_the_scale_that_works(client: Any, jobs: Any, name: str) -> None:
     (fault,) = refused(client, jobs[name][0], 422, pin=25)["errors"]
@@ -219,6 +222,7 @@ def test_sizes_that_contradict_one_another_are_refused(client: Any, jobs: Any, f
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sizes", [{"width": 40, "pin": 4}, {"width": 1e6}, {"width": 1e4, "pin": 20}])
 def test_pawls_that_are_wider_than_long_are_refused(client: Any, jobs: Any, sizes: dict[str, float]) -> None:
     (fault,) = refused(client, jobs["ratchet"][0], 422, **sizes)["errors"]
@@ -226,6 +230,7 @@ def test_pawls_that_are_wider_than_long_are_refused(client: Any, jobs: Any, size
     assert "cannot be built" not in fault["detail"]
 
 
+@pytest.mark.slow
 def test_however_small_a_mechanism_is_the_scale_that_works_is_told(client: Any, jobs: Any) -> None:
     (fault,) = refused(client, jobs["ratchet"][0], 422, scale=1e-6)["errors"]
     assert fault["path"] == "/query/scale"

@@ -39,6 +39,7 @@ def plate(text: bytes) -> shapely.Polygon:
     return outer.difference(shapely.union_all([ring for ring in rings if ring is not outer]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["disc", "rim"])
 def test_a_flywheel_is_cut_with_the_mass_of_the_answer_beside_what_is_told(client: Any, form: str) -> None:
     job = finished(client, {**FLYWHEEL, "form": form})

@@ -50,6 +50,7 @@ def test_one_pair_of_a_stage_is_in_mesh_and_the_output_turns_at_that_speed(clien
     assert any(f"Speed {speed or 1} of 3 is shown, {found['speed']:.6g} rev/min" in note for note in view["notes"])
 
 
+@pytest.mark.slow
 def test_the_same_parts_make_every_speed_and_slide_on_keys_as_long_as_their_way(client: Any, box: Any) -> None:
     place, _ = box
     rows, others = (bill(parts(client, place, speed=speed)) for speed in (1, 2))

@@ -19,6 +19,7 @@ from service.parts.registry import NotMade, make_parts
 from tests.support.service.parts_of_geared_linkages import planted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [-2.0, 1.5])
 def test_gears_turn_with_their_links_and_would_bite_in_any_other_phase(ratio: float) -> None:
     problem, design = planted(ratio)

@@ -80,6 +80,7 @@ def middle_of_teeth(places: np.ndarray, teeth: int) -> float:
     return float(np.angle((tips**teeth).sum()) / teeth)
 
 
+@pytest.mark.slow
 def test_shafts_stand_as_far_apart_as_the_answer_says(client: Any, pair: str) -> None:
     files = parts(client, pair, **SIZES)
     distance = client.get(pair.rsplit("/designs")[0]).json()["result"]["designs"][0]["metrics"]["centre_distances"][0]
@@ -100,6 +101,7 @@ def test_the_bill_of_a_pair_names_keys_and_shafts(client: Any, pair: str) -> Non
     assert rows["base"]["thickness"] == "5"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "value"),
     [("bore", 8), ("thickness", 6), ("face_width", 20), ("clearance", 0.2), ("scale", 2.0), ("process", "print")],
@@ -158,6 +160,7 @@ def test_a_refusal_says_what_works(client: Any, pair: str) -> None:
     assert parts(client, pair, scale=float(words[words.index("scale") + 1]))
 
 
+@pytest.mark.slow
 def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
     job = finished(
         client, {"kind": "gear_train", "ratio": "6", "max_stages": 2, "max_designs": 1, "reverted": True,
@@ -258,6 +261,7 @@ def test_trains_that_are_not_built_are_refused_with_the_reason(client: Any) -> N
         assert words in answer["detail"]
 
 
+@pytest.mark.slow
 def test_trains_in_series_stand_between_two_plates(client: Any) -> None:
     unit = {"type": "gear_train", "max_stages": 1, "teeth": {"min": 18, "max": 60}}
     job = finished(

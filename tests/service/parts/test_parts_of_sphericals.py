@@ -33,6 +33,7 @@ WHOLE = 2.0 / 3.0 * math.pi * 10.0**3
 BORE = 2.0 / 3.0 * math.pi * (10.0**3 - 96.0**1.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cut", "taken", "inside", "outside"),
     [

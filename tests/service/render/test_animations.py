@@ -106,6 +106,7 @@ def test_what_is_far_away_or_large_is_drawn_all_the_same():
         assert np.asarray(picture.convert("L")).min() < 100
 
 
+@pytest.mark.slow
 def test_over_http(client):
     job = client.post("/v1/jobs", json={"problem": CAM}, headers={"Prefer": "wait=30"}).json()
     answer = client.get(f"/v1/jobs/{job['id']}/designs/0.gif")

@@ -156,6 +156,7 @@ def drawing_of(kind: str) -> ezdxf.document.Drawing:
     return ezdxf.read(io.StringIO(export_design(*solved(kind), "A cam", "dxf")))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FOLLOWERS)
 def test_a_dxf_is_sound_and_layered(kind: str) -> None:
     document = drawing_of(kind)

@@ -13,9 +13,9 @@ import pytest
 
 from service.render import export_design
 from service.render.gears.gearbox_layout import BoxGear, BoxLayout, arrange_gearbox, arrange_layshaft
-from synthesis.dispatch import solve
 from synthesis.registry import get_first_example, parse_problem
 from tests.campaign import further
+from tests.support.answers import solve
 from tests.support.service.gear_drawing import assert_involute
 
 TASKS: dict[str, dict[str, Any]] = {
@@ -47,7 +47,7 @@ QUICK = [TASKS["no_reverse"]]
 @pytest.fixture(scope="module", params=further(TASKS.values(), QUICK), ids=TASKS.keys())
 def task(request: pytest.FixtureRequest) -> tuple[Any, Any]:
     problem = parse_problem(request.param)
-    return solve(problem, lambda fraction, message: None).designs[0], problem
+    return solve(problem).designs[0], problem
 
 
 def layout_of(design: Any) -> BoxLayout:

@@ -47,6 +47,7 @@ def drawing(kind: str, unit: str = "mm") -> Any:
     return document
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", TYPES)
 def test_the_drawing_has_pins_and_links_where_the_skeleton_says(kind: str) -> None:
     design, _ = solved(kind)

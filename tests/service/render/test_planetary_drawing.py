@@ -15,8 +15,8 @@ import pytest
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render import export_design
 from service.render.gears.planetary_layout import PlanetaryGear, place_planetary_gears
-from synthesis.dispatch import solve
 from synthesis.registry import get_first_example, parse_problem
+from tests.support.answers import solve
 
 TRAINS: list[dict[str, Any]] = [
     {"ratio": 5.0, "arrangement": "simple", "input": "sun", "output": "carrier", "planets": 4},
@@ -31,7 +31,7 @@ TRAINS: list[dict[str, Any]] = [
 
 def solved(**stated: Any) -> tuple[Any, Any]:
     problem = parse_problem({"kind": "planetary_train", **stated})
-    return solve(problem, lambda fraction, message: None).designs[0], problem
+    return solve(problem).designs[0], problem
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_bevel_differential_is_drawn() -> None:
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])
 def test_ray_diagrams_and_tables(kind: str) -> None:
     problem = parse_problem(get_first_example(kind))
-    design: Any = solve(problem, lambda fraction, message: None).designs[0]
+    design: Any = solve(problem).designs[0]
     drawn = ElementTree.fromstring(export_design(design, problem, "Box", "svg"))
     rays = [tuple(map(float, node.get("data-ray", "").split())) for node in drawn.iter() if node.get("data-ray")]
     nodes = [node.get("data-node", "").split() for node in drawn.iter() if node.get("data-node")]

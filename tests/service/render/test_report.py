@@ -12,8 +12,8 @@ from service.render.outline import MAX_ROWS, make_outline
 from service.render.page.numbers import format_length
 from service.render.report import POLICY, ReportedJob, report
 from service.units import list_symbols
-from synthesis.dispatch import solve
 from synthesis.registry import KINDS, list_examples, parse_problem
+from tests.support.answers import solve
 
 VOID = {"meta", "link", "br", "img", "input", "hr"}
 OCCASION = ReportedJob("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
@@ -191,6 +191,7 @@ def test_what_cannot_be_reported_is_refused(server, client):
     assert json.loads(refused.text)["type"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_kinds_tell_which_files_there_are(client, kind):
     (told,) = [one for one in client.get("/v1/problems").json()["problems"] if one["kind"] == kind]

@@ -13,6 +13,7 @@ import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
+from tests.support import cpu_time
 
 ROOT = Path(__file__).parents[3]
 REAL = ("-m", "service.command.cli")
@@ -60,6 +61,7 @@ class RunningServer:
             self.process = subprocess.Popen(
                 [sys.executable, *program, "serve"], stdout=out, stderr=log, env=env, cwd=folder
             )
+            cpu_time.own_servers.add(self.process.pid)
             self.host = self.process
             if CHOSEN.distributed:
                 self.host = subprocess.Popen(
@@ -123,6 +125,7 @@ class RunningServer:
     def stop(self):
         """Ask the server to end; gives its exit status."""
         self.client.close()
+        cpu_time.own_servers.discard(self.process.pid)
         self.process.send_signal(signal.SIGTERM)
         if self.host is not self.process:
             self.host.send_signal(signal.SIGTERM)
@@ -131,6 +134,7 @@ class RunningServer:
     def kill(self):
         if hasattr(self, "client"):
             self.client.close()
+        cpu_time.own_servers.discard(self.process.pid)
         for process in (self.process, self.host):
             process.kill()
             process.wait(STOP_S)

@@ -8,8 +8,8 @@ import pytest
 
 from synthesis.analyses import parse_request
 from synthesis.analyses.gears.planetary_train import PlanetaryAnalysis, PlanetaryAnalysisRequest
-from synthesis.dispatch import solve
 from synthesis.registry import get_first_example, parse_problem
+from tests.support.answers import solve
 
 SIMPLE: dict[str, Any] = {
     "type": "planetary_train",
@@ -79,7 +79,7 @@ def test_what_does_not_follow_is_told() -> None:
 
 
 def test_designs_are_analysed_as_they_are() -> None:
-    result = solve(parse_problem(get_first_example("planetary_train")), lambda fraction, message: None)
+    result = solve(parse_problem(get_first_example("planetary_train")))
     design = result.designs[0]
     found = PlanetaryAnalysis.model_validate(PlanetaryAnalysisRequest.analyze_cycle(design.mechanism.model_dump(), 8))
     assert found.ratio == design.mechanism.ratio.value

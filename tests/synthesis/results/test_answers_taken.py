@@ -10,10 +10,10 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.analyses import list_families, parse_request
-from synthesis.dispatch import solve
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.statements import Schema, choices, fields
+from tests.support.answers import solve
 
 CASES = [(kind, number) for kind in KINDS for number in range(len(KINDS[kind].examples))]
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.dispatch import solve
 from synthesis.model.answer import Result
 from synthesis.registry import KINDS, parse_problem
 from tests.campaign import further
 from tests.service.stated.linkages import DRIVEN, DWELL, LINE, MOTION, PARALLEL, PATH, QUICK_RETURN, STEERING
+from tests.support.answers import solve
 
 Statement = dict[str, Any]
 
@@ -38,6 +38,7 @@ TASKS: dict[str, tuple[Statement, float]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(TASKS, TASKS.keys() - {"dwell", "path"}))
 def test_a_layout_is_all_that_the_block_adds(name: str) -> None:
     problem, width = TASKS[name]
@@ -90,6 +91,7 @@ def test_where_no_design_keeps_the_limit_the_nearest_is_told() -> None:
     assert held.nearest_miss.design.layout.count == 4
 
 
+@pytest.mark.slow
 def test_a_linkage_with_a_driver_is_held_to_its_planes_and_not_its_fourbar() -> None:
     problem = {**MOTION, **DRIVEN, "driver_dyad": True, "include_failed": True}
     counts = [design.layout.count for design in answer(problem, block(1.0)).designs]

@@ -136,6 +136,7 @@ def test_tolerances_that_matter_come_first_and_widen_errors() -> None:
         assert sum(shares[: len(told["matter"])]) >= 0.8 > sum(shares[: len(told["matter"]) - 1])
 
 
+@pytest.mark.slow
 def test_positions_with_tolerances_are_held_where_the_design_passes_them() -> None:
     """The quality is kept about the place as drawn, and the position's own tolerance on top of that."""
     block = {"tolerances": FINE, "samples": 8001}
@@ -154,6 +155,7 @@ def test_positions_with_tolerances_are_held_where_the_design_passes_them() -> No
     assert 0.1 < own < plain - 0.1
 
 
+@pytest.mark.slow
 def test_a_demanded_yield_is_a_check_and_ranks() -> None:
     open_ones = {**MOTION, **BOTH_OPEN, "max_designs": 4}
     block = {"tolerances": FINE, "quality": {"max_error": 0.2, "max_angle_error": 0.2}, "samples": 2001}
@@ -234,6 +236,7 @@ def exact_of(problem: Statement, design: Statement) -> made_linkages.Stated:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ON_GRID)
 def test_no_linkage_within_two_steps_is_nearer(name: str) -> None:
     problem, block = ON_GRID[name]
@@ -322,6 +325,7 @@ def test_stated_pivots_stay_and_other_demands_hold_on_the_grid() -> None:
         assert checks["max_error"].value == max(target.point_residual for target in design.targets) <= 0.5
 
 
+@pytest.mark.slow
 def test_a_quality_that_no_grid_keeps_is_the_nearest_miss() -> None:
     block = {"round": {"length": 10.0, "coordinates": 10.0}, "quality": {"max_error": 0.001}}
     stated = {**LOGARITHM, "max_designs": 1, "manufacture": block}
@@ -397,6 +401,7 @@ def test_play_holds_all_places_that_clearance_links_lead_to(name: str) -> None:
                 assert 0.8 * told["max_angle_error"] < turned.max() <= told["max_angle_error"]
 
 
+@pytest.mark.slow
 def test_the_widest_tolerances_still_give_the_yield_and_no_wider_ones_do() -> None:
     demanded = 0.9
     quality = {"max_error": 0.4, "max_angle_error": 0.4, "yield": demanded}

@@ -66,6 +66,7 @@ def test_where_all_designs_are_known_nothing_beyond_is_within_reach():
     assert solve(parse_problem(limited(statement, min_transmission_angle=reachable + 1e-6))).designs == []
 
 
+@pytest.mark.slow
 def test_the_gap_of_a_zone_is_the_distance_of_the_pivots_from_it():
     zone = {"x": [300.0, 310.0], "y": [-5.0, 5.0]}
     result = solve(parse_problem(motion(fixed_pivot_region=zone)))
@@ -173,6 +174,7 @@ def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count
     assert solve(parse_problem({**statement, "dwell_angle": longest})).designs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [0.5, 3.0, 30.0])
 def test_no_search_is_begun_that_the_allowance_has_no_room_for(seconds):
     """Searches that take so long, by a clock of the test's: the first is made, and others while one more fits."""

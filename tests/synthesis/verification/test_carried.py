@@ -100,6 +100,7 @@ def test_a_long_turn_and_a_wandering_body_cost_quality() -> None:
     )
 
 
+@pytest.mark.slow
 def test_first_answers_turn_little_and_go_straight() -> None:
     """Ordinary tasks of three positions: few first answers turn their input by more than half a turn."""
     rng = np.random.default_rng(11)

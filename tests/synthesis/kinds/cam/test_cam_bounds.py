@@ -129,6 +129,7 @@ def random_run(rng, order):
     return Run(angle, tuple(conditions), 2, stated), inner, limits, lift / angle**order
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("seed", range(6))
 def test_no_motion_of_another_solver_beats_the_bound(seed, order):

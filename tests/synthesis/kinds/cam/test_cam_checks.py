@@ -88,6 +88,7 @@ def missing(follower: Statement, *names: str) -> set[str]:
     return wanted - {check.name for check in design.verification.checks}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(DEMANDS, ("least force", "hub", "rate", "jumps")))
 def test_a_demand_alone_is_checked(name: str) -> None:
     assert not missing(FACE if name in ONLY_FACES else ROLLER, name)

@@ -117,6 +117,7 @@ def test_a_face_has_the_extremes_of_the_laws(law: str, follower: str) -> None:
     assert found.face_width == pytest.approx(np.ptp(reach), rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_a_barrel_has_the_extremes_of_the_laws(law: str) -> None:
     """tan φ = v/R and κ = a R/(R² + v²)^{3/2}."""
@@ -165,6 +166,7 @@ def test_curvature_is_measured_where_a_step_is_almost_a_break() -> None:
     assert steps.min() > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "number"), further([(5, 18), (0, 39), (5, 159), (0, 179)], [(5, 18)]))
 def test_rounding_leaves_a_least_radius_its_digits(seed: int, number: int) -> None:
     """Optimal motions go to the limit of 3: it was stated up to 6.6e-6 less where points stood close."""
@@ -203,6 +205,7 @@ def test_a_spike_of_the_acceleration_is_measured(follower: str, minimize: str, r
     assert exact * (1.0 - rounded) <= design.metrics.min_convex_radius <= exact * (1.0 + 1e-7)
 
 
+@pytest.mark.slow
 def test_points_are_laid_where_no_equal_step_has_room() -> None:
     """Forty equal steps, and a break every third of a degree."""
     n = 1080
@@ -314,6 +317,7 @@ def test_a_limit_on_jerk_is_measured_within_a_ten_thousandth(points: int, follow
     assert check.value == pytest.approx(jerk, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_extremes_of_exact_formulas_agree(seed: int) -> None:
     """What the profile's points give against what the program gives at once, for cams that turn either way."""

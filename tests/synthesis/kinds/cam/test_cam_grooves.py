@@ -61,6 +61,7 @@ def test_small_rollers_get_the_points_that_the_outer_wall_needs(radius):
     assert design.verification.passed
 
 
+@pytest.mark.slow
 def test_a_wall_that_was_tampered_with_is_found():
     problem, design = designed(FOLLOWERS[0])
     wall = design.mechanism.outer_wall
@@ -78,6 +79,7 @@ def test_a_wall_that_was_tampered_with_is_found():
     assert "outer_wall_reproduces_program" in broken(None)
 
 
+@pytest.mark.slow
 def test_the_analysis_measures_the_play():
     _, design = designed(FOLLOWERS[1])
     mechanism = design.mechanism.model_dump(exclude_none=True)

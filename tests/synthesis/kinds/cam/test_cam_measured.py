@@ -108,6 +108,7 @@ def test_a_broken_limit_is_found_on_the_profile_alone(name, share):
 CONDITIONS = [{"angle": 40.0, "s": 10.0, "v": 24.0}, {"angle": 60.3, "a": -20.0}]
 
 
+@pytest.mark.slow
 def test_conditions_are_measured_at_their_own_angles():
     """None of them is an angle of the table, 60.3 least of all."""
     stated = problem(conditions=CONDITIONS)
@@ -144,6 +145,7 @@ def test_a_band_that_is_left_is_found():
     assert failed(tight, mechanism) == {"meets_positions"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("continuity", ["acceleration", "jerk"])
 def test_a_stated_jerk_is_a_condition_like_others(continuity):
     stated = problem(conditions=[{"angle": 40.0, "j": 3.0}], continuity=continuity)
@@ -203,6 +205,7 @@ def test_a_short_chord_beside_a_long_one_is_measured_where_the_curvature_is_grea
     assert design.metrics.min_convex_radius == pytest.approx(5.864, rel=2e-6)
 
 
+@pytest.mark.slow
 def test_an_acceleration_that_is_left_as_fast_as_a_jerk_allows_is_met():
     """The cheapest motion comes to it for two degrees only, which is as abrupt as the client has allowed."""
     conditions = [{"angle": 45.0, "a": 0.0}, {"angle": 22.5, "a": 40.5}]

@@ -147,6 +147,7 @@ def test_least_inertia_torque(lift):
     assert np.abs(law.v * law.a).max() == pytest.approx(5.458, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_least_rms_torque_is_bounded_from_below_by_the_laws_and_reached():
     best = found(minimize_torque(dwell_to_dwell(), "rms"))
     assert best.value <= best.bound * 1.001
@@ -164,6 +165,7 @@ def test_torque_under_a_limit_on_jerk_keeps_it():
     assert_meets(run, best.motions[0])
 
 
+@pytest.mark.slow
 def test_motion_and_prime_radius_together():
     """Unit lift in 60°, 20°, no offset, modified sine's own peaks: 3.647 where modified sine itself needs 4.142."""
     angle, tangent = math.pi / 3.0, math.tan(math.radians(20.0))

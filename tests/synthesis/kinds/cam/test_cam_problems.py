@@ -293,6 +293,7 @@ def test_ill_formed_statements_are_refused(changes, where):
     assert where in str(fault.value.errors()[0]["loc"]) + str(fault.value.errors()[0]["msg"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["simple_harmonic", "auto", "optimal"])
 def test_a_spring_that_holds_more_than_is_asked_for_has_no_negative_preload(law):
     """The stiff spring alone keeps the follower on the cam: the value is the greatest force, the bound below it."""

@@ -119,11 +119,13 @@ def test_translating_roller_against_brute_force(seed):
     check_translating(seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_oscillating_roller_against_brute_force(seed):
     check_oscillating(seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_flat_faces_against_brute_force(seed):
     check_flat(seed)

@@ -43,6 +43,7 @@ def moves(rise_law, fall_law, lift=25.0, rise=90.0, fall=90.0):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES[:4], ids=["double dwell", "rise-fall-dwell", "critical path", "valve"])
 def test_examples_are_solved_and_verified(example):
     result = answered(cam(example))
@@ -173,6 +174,7 @@ def test_every_follower_and_sense_of_rotation(follower, rotation):
         assert design.metrics.min_convex_radius >= 2.0 * 0.998
 
 
+@pytest.mark.slow
 def test_tampering_is_found():
     """Verification measures the profile: it must not pass a cam that was changed anywhere."""
     problem = cam()
@@ -308,6 +310,7 @@ def test_continuous_jerk():
     assert all(joint.continuous == ["s", "v", "a", "j"] for joint in design.joints)
 
 
+@pytest.mark.slow
 def test_a_whole_turn_of_optimal_motions():
     segments = [
         {"motion": "rise", "angle": 180.0, "lift": 10.0, "law": "optimal"},
@@ -375,6 +378,7 @@ def test_a_lift_that_vanishes_beside_the_roller_is_solved():
     assert design.mechanism.prime_radius == pytest.approx(20.0, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_cam_that_comes_to_the_pivot_of_its_arm_is_refused():
     segments = moves("modified_sine", "cycloidal", 9.0, 30.0, 55.0)
     follower = {"type": "oscillating_flat", "pivot_distance": 140.0, "face_offset": -7.0, "sense": -1}
@@ -464,6 +468,7 @@ def test_a_least_force_between_two_walls_is_refused(changes) -> None:
     assert parse_problem(statement).find_contradictions() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("criterion", "exploded"),
     further(

@@ -71,6 +71,7 @@ def test_dwells_are_what_was_measured(fields) -> None:
     assert qualities == sorted(qualities, reverse=True) or "are listed first" in result.summary
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", cases("dwell"))
 def test_norton_example_3_13(case: Case) -> None:
     """A rocker of 90° over 300° of the crank that rests for 60°, found instead of read off an atlas."""
@@ -83,6 +84,7 @@ def test_norton_example_3_13(case: Case) -> None:
         assert design.metrics.jitter < 0.005 * given["output_deg"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fields", further(TASKS[:3], TASKS[1:2]), ids=["rocker", "slot", "slider"])
 def test_the_crank_turns_through_by_the_constraints_alone(fields) -> None:
     """Rigid lengths and slides, stepped along the crank's turn: no toggle comes, and the turn closes."""
@@ -100,6 +102,7 @@ def test_the_sizes_that_are_asked_for() -> None:
         assert np.allclose(design.mechanism.fixed_pivots["O2"], (100.0, -50.0))
 
 
+@pytest.mark.slow
 def test_limits_of_the_client_are_kept() -> None:
     problem = stated(mechanism="pseudo_arc", constraints={"min_transmission_angle": 40.0, "max_link_ratio": 6.0})
     designs = solved(problem).designs
@@ -164,6 +167,7 @@ def test_what_is_not_found_is_not_claimed_to_be_impossible(fields) -> None:
     assert sum(result.search.rejected.values()) == result.search.candidates
 
 
+@pytest.mark.slow
 def test_verification_notices_a_wrong_length() -> None:
     problem = stated(mechanism="pseudo_arc")
     design = solved(problem).designs[0]

@@ -124,6 +124,7 @@ def test_no_rest_counts_for_two_places() -> None:
     assert "dwells_apart" in {check.name for check in design.verification.checks if not check.passed}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "number"), [("rocker", ROCKER_CODE), ("slider", SLIDER_CODE), ("slot", SLOT_CODE)])
 def test_the_kernel_finds_the_stretches_that_plain_numpy_finds(kind: Any, number: int) -> None:
     rng = np.random.default_rng(5)

@@ -135,6 +135,7 @@ SMALL: list[tuple[int, Statement]] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strokes", [2, 4])
 @pytest.mark.parametrize(("count", "layout"), SMALL, ids=[f"{one['type']}-{n}" for n, one in SMALL])
 def test_all_even_arrangements_are_found(count: int, layout: Statement, strokes: int) -> None:
@@ -183,6 +184,7 @@ def test_the_inline_four() -> None:
     assert (best.metrics.primary_force, best.metrics.primary_moment, best.metrics.secondary_force) == (0.0, 0.0, 4.0)
 
 
+@pytest.mark.slow
 def test_the_inline_six() -> None:
     best = firsts(6, {"type": "inline"})
     mirrored = [(-phase) % 360.0 for phase in best.mechanism.throws]
@@ -194,6 +196,7 @@ def test_the_inline_six() -> None:
     assert best.balancers == []
 
 
+@pytest.mark.slow
 def test_the_cross_plane_vee_eight() -> None:
     best = firsts(8, {"type": "vee", "vee_angle": 90.0})
     assert best.mechanism.throws == [0.0, 90.0, 270.0, 180.0]
@@ -204,6 +207,7 @@ def test_the_cross_plane_vee_eight() -> None:
     assert balancer.forward == pytest.approx(math.sqrt(10.0))
 
 
+@pytest.mark.slow
 def test_the_vee_six_of_sixty_degrees() -> None:
     """Pins of their own 60° apart: primary and secondary couples of constant size."""
     best = firsts(6, {"type": "vee", "vee_angle": 60.0, "pins": "own", "positions": [0, 0, 1, 1, 2, 2]} | {})
@@ -243,6 +247,7 @@ def test_stated_throws_need_not_fire_evenly() -> None:
     assert least[0] > 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "strokes"), [(10, 4), (12, 4), (9, 4), (10, 2)])
 def test_more_throws_are_counted(count: int, strokes: int) -> None:
     result = answered(count, {"type": "inline"}, strokes, max_designs=2)

@@ -180,6 +180,7 @@ class TestPrecisionPoints:
 
 
 class TestOpenScales:
+    @pytest.mark.slow
     @pytest.mark.parametrize("count", [6, 7])
     def test_planted_linkages_come_back(self, count):
         rng = np.random.default_rng(count)
@@ -200,6 +201,7 @@ class TestOpenScales:
             result = solved(pairs=pairs, constraints=UNBOUNDED, max_designs=50)
             assert holds(result, lengths, 1e-5), n
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("count", [6, 7])
     def test_pairs_on_their_own_scales_come_first(self, count):
         rng = np.random.default_rng(20 + count)

@@ -51,6 +51,7 @@ class TestApproximations:
         assert mean["square"] <= mean["exact"]
         assert mean["square"] <= mean["minimax"]
 
+    @pytest.mark.slow
     def test_with_zeros_given_four_extremes(self):
         task = task_of(CASES[3])
         design = solved(**task, zeros={"input": 240.0, "output": 220.0}).designs[0]
@@ -60,6 +61,7 @@ class TestApproximations:
         assert square.structural_error.rms <= design.structural_error.rms
         assert len({round(d.mechanism.links.coupler, 6) for d in [square]}) == 1
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("sign", further([1.0, -1.0], [-1.0]))
     def test_either_direction_is_tried_where_it_is_open(self, sign):
         # The optima of both directions differ three times.

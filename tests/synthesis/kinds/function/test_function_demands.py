@@ -16,11 +16,13 @@ from tests.support.demands.planted import box
 from tests.support.synthesis.function_tasks import silent
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", list(function_constraints.tasks(sampled(24), 3)), ids=lambda task: task.name)
 def test_all_constraints_a_little_looser_than_a_planted_linkage(task):
     assert task.answered(solve_function(parse_problem(task.statement), silent))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further([54, 84], [54]))
 def test_members_of_a_family_are_moved_into_narrow_limits(number):
     # Of eight thousand members that are drawn none lies there.

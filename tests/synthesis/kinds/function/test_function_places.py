@@ -33,6 +33,7 @@ class TestPlaceAndSize:
         assert any(np.allclose(proportions(design), lengths, rtol=1e-5) for design in result.designs)
         assert result.designs[0].mechanism.fixed_pivots.input == (origin, origin)
 
+    @pytest.mark.slow
     def test_sizes_and_regions_are_kept(self):
         task = task_of(CASES[3])
         limits = {"link_length": {"min": 20.0, "max": 90.0}}

@@ -21,6 +21,7 @@ def test_a_planted_function_is_answered_in_its_room(number: int) -> None:
         assert violations(stated, design) == []
 
 
+@pytest.mark.slow
 def test_that_no_place_is_found_is_no_proof() -> None:
     stated = statement(generator(1, 2), GROUPS[2])
     o2 = {"circle": {"center": [0.0, 0.0], "radius": 10.0}}

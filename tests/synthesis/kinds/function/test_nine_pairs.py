@@ -97,6 +97,7 @@ def test_a_nearly_singular_end_is_reached_along_a_precise_way_alone():
     assert np.abs(gaps(fine.y[0], p)).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_the_start_has_all_solutions_each_once():
     begun = load_nine_pair_start()
     assert begun.y.shape == (SOLUTION_COUNT, 8)

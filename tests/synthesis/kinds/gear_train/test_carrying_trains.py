@@ -90,6 +90,7 @@ def test_a_brute_force_finds_the_same() -> None:
             speed *= stage.driver / stage.driven
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rank_by", ["error", "size"])
 def test_ties_and_front_are_of_all_trains_that_carry(rank_by: str) -> None:
     """However few designs are asked for; by the same brute force."""
@@ -158,6 +159,7 @@ def test_the_stages_stand_in_the_order_that_carries() -> None:
         assert max(widths) <= 12.0 * 2.0 * (1.0 + 1e-9)
 
 
+@pytest.mark.slow
 def test_with_a_distance_the_demands_hold_together() -> None:
     stated: dict[str, Any] = {
         "ratio": "pi", "max_stages": 2, "teeth": {"min": 17, "max": 100}, "reverted": True, "tolerance": 1e-4,
@@ -171,6 +173,7 @@ def test_with_a_distance_the_demands_hold_together() -> None:
         assert design.metrics.centre_distances == pytest.approx([120.0, 120.0], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_an_idler_carries_too() -> None:
     stated: dict[str, Any] = {"ratio": "-4", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
     designs = solved(**stated, strength=POWER, max_designs=2, max_total_teeth=160).designs
@@ -183,6 +186,7 @@ def test_an_idler_carries_too() -> None:
             assert widths[idler.stage - 1] == widths[idler.stage]
 
 
+@pytest.mark.slow
 def test_an_idler_bears_less_since_its_teeth_are_bent_both_ways() -> None:
     """0.7 of the allowable stress on it, in search, proof and analysis; all others bear what they do in a pair."""
     bending = {name: POWER[name] for name in ("power_kw", "speed_rpm", "allowable_bending", "max_face_width")}

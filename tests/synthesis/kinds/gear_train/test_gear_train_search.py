@@ -221,6 +221,7 @@ DEMANDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("demands", DEMANDS.values(), ids=DEMANDS.keys())
 @pytest.mark.parametrize(("ratio", "at_once"), [("1", False), ("1.37", True), ("2/3", True), ("2.25", False)])
 def test_every_demand_against_plain_search(

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from synthesis.model.gears.ratio_target import TargetSyntaxError, parse_target
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "value"),
     [

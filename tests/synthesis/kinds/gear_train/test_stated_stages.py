@@ -53,12 +53,14 @@ def test_a_search_that_is_small_is_not_refused(stages: list[Statement], fields: 
     assert faults(*stages, ratio="100", **fields) == []
 
 
+@pytest.mark.slow
 def test_a_wide_stage_beside_narrow_ones_is_solved() -> None:
     result = solved(SPUR, GIVEN, GIVEN, GIVEN, ratio="7/2", teeth={"min": 12, "max": 60})
     assert result.designs[0].metrics.relative_error == 0.0
     assert result.search.combinations == (49 * 11**3) ** 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("angle", "least"), [(20.0, 4), (25.0, 0)])
 def test_rings_that_run_are_those_of_a_sound_pair(angle: float, least: int) -> None:
     """Of every pinion and ring, against the pair's own geometry and against corners that are followed as points."""

@@ -415,6 +415,7 @@ def test_helical_and_spur_stages_agree_on_a_distance() -> None:
     assert one == pytest.approx(two, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_ring_carries_a_power() -> None:
     result = solved(INTERNAL, ratio="3", module=2.0, strength=STRENGTH)
     assert result.designs[0].metrics.strength is not None

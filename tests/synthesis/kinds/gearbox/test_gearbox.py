@@ -344,6 +344,7 @@ def test_layshaft_against_plain_loops(reverse: float | None) -> None:
     assert errors == sorted(errors)
 
 
+@pytest.mark.slow
 def test_layshaft_demands() -> None:
     stated: dict[str, Any] = {"ratios": [3.5, 2.1, 1.4, 1.0], "reverse": 3.3}
     by_size = layshaft(**stated, rank_by="size", tolerance=0.02, max_designs=50)

@@ -144,6 +144,7 @@ def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: Drive) -> Non
     assert (float(resting.v[0]), float(resting.a[0])) == (0.0, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "example", [one for one in list_examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
 )
@@ -177,6 +178,7 @@ def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
         assert name in failed, (name, failed)
 
 
+@pytest.mark.slow
 def test_forces_that_are_told_wrong_are_noticed() -> None:
     problem = parse_problem(list_examples("indexing")[0])
     design = solve(problem, lambda fraction, message: None).designs[0]
@@ -350,6 +352,7 @@ def test_slots_wider_than_the_wheel_are_no_drive(drive: str) -> None:
     assert result.search.rejected.keys() == {"no_room_for_walls"}
 
 
+@pytest.mark.slow
 def test_a_crescent_is_as_thick_as_a_wall_at_a_stated_size() -> None:
     thin = solved(drive="geneva_internal", center_distance=44.0, wall_thickness=5.0)
     assert not thin.designs
@@ -360,6 +363,7 @@ def test_a_crescent_is_as_thick_as_a_wall_at_a_stated_size() -> None:
     assert min(np.subtract(disc.outer_radius, disc.inner_radius)) == pytest.approx(5.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_wheel_that_rattles_in_its_disc_is_not_held() -> None:
     wanted = {"center_distance": 80.0, "roller_diameter": 12.0, "rollers": 1}
     loose = solved(**wanted, clearances={"locking": 16.0})
@@ -374,6 +378,7 @@ def test_a_wheel_that_rattles_in_its_disc_is_not_held() -> None:
     assert small.metrics.play < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["geneva_external", "geneva_spherical"])
 def test_no_size_below_the_smallest_is_taken(drive: str) -> None:
     spherical = drive == "geneva_spherical"
@@ -406,6 +411,7 @@ def test_a_height_that_is_chosen_proves_nothing() -> None:
     assert ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0, "tooth_height": 0.9}).designs
 
 
+@pytest.mark.slow
 def test_a_roller_that_enters_obliquely_needs_a_wide_slot() -> None:
     wanted = {"stations": 4, "center_distance": 100.0, "crank_radius": 85.0, "roller_diameter": 12.0}
     wanted |= {"constraints": {"shock_free": False}}
@@ -426,6 +432,7 @@ def test_a_roller_that_enters_obliquely_needs_a_wide_slot() -> None:
     assert wide.designs[3].dwell_share == pytest.approx(1.0 - 4.0 * 22.587 / 360.0, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_crank_typed_with_six_digits_enters_without_shock() -> None:
     for typed in (70.7107, 70.7106):
         (design,) = solved(stations=4, center_distance=100.0, crank_radius=typed, rollers=1).designs
@@ -440,6 +447,7 @@ def broken_by(problem: Any, design: Any, part: str, change: dict[str, Any]) -> s
     return {check.name for check in verify(problem, changed).verification.checks if not check.passed}
 
 
+@pytest.mark.slow
 def test_what_is_told_is_measured_again() -> None:
     base = {"kind": "indexing", "drive": "geneva_internal", "stations": 4, "roller_diameter": 10.0, "speed_rpm": 60.0}
     problem = parse_problem(base | {"constraints": {"steady_share": 0.2}})

@@ -24,6 +24,7 @@ def within(design: Any, problem: Statement) -> None:
     assert {check.name: check.passed for check in design.verification.checks}["within_tolerance"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", further([5, 12, 16], [5]))
 def test_a_slider_uses_the_tolerances(seed: int) -> None:
     """No slider-crank was met that meets these positions exactly with its pivots in their zones."""
@@ -84,6 +85,7 @@ FIRST_MISSED: list[Statement] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [{}, {"dyad": "PR"}, {"dyad": "RP"}])
 def test_the_reference_is_the_first_target_where_that_may_be_missed(side: Statement) -> None:
     """Its input, its body's angle and its P are those of the first target."""
@@ -122,6 +124,7 @@ def test_rotations_that_are_all_open_state_nothing() -> None:
     assert not parse_problem(problem).find_contradictions()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stated", [{"moving_pivot": [10.0, -20.0]}, {"coupler_vector": {"angle": 20.0}}])
 def test_what_is_stated_of_the_body_goes_with_it_where_its_first_position_is_missed(stated: Statement) -> None:
     """With 60 degrees demanded no slider-crank is met unless the first tolerance is used."""

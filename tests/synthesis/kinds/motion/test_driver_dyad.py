@@ -115,6 +115,7 @@ def test_the_crank_s_pivot_can_be_kept_in_a_region() -> None:
         assert "driver_pivot_region" in {check.name for check in design.verification.checks}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("link", ["input", "output"])
 def test_the_driven_link_can_be_chosen(link: str) -> None:
     problem, result = solved(TWO, driver_dyad={"link": link}, max_designs=2)

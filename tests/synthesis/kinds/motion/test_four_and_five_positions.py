@@ -311,6 +311,7 @@ class TestDegenerate:
 POSES = st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-90.0, 90.0))
 
 
+@pytest.mark.slow
 @settings(derandomize=True, max_examples=8, deadline=None)
 @given(
     seed=st.integers(0, 10_000),
@@ -400,6 +401,7 @@ def test_an_arc_is_not_taken_for_a_rotation_about_one_point(share: float) -> Non
     assert result.designs or not result.search.complete
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [3, 4, 5])
 def test_a_stated_pivot_is_not_ruled_out_by_digits_that_are_lost(n: int) -> None:
     """The images of any point of a body that moves along an arc by little are nearly in line."""

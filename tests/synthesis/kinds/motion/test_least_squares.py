@@ -115,6 +115,7 @@ def assert_sound_by_continuation(design: LinkageDesign) -> None:
     assert circuit.in_order.all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_planted_linkages_are_recovered_without_noise(seed: int) -> None:
     planted = plant_many(np.random.default_rng(seed), 20)
@@ -176,6 +177,7 @@ def test_held_positions_stay_held_while_others_are_fitted() -> None:
     assert_sound_by_continuation(best)
 
 
+@pytest.mark.slow
 def test_tolerances_are_kept_and_held_coordinates_met() -> None:
     rng = np.random.default_rng(3)
     planted = plant_many(rng, 8)

@@ -127,6 +127,7 @@ def test_a_motion_ends_where_the_greatest_share_of_a_tolerance_is_least() -> Non
     assert ended > 2
 
 
+@pytest.mark.slow
 def test_what_lacks_nothing_of_the_room_is_found_to_fit() -> None:
     """The least margin of a finished linkage says what the sweep says, but for the narrow aim."""
     stated = {**statement(generator(1, 6), *GROUPS[6]), "max_designs": 2}
@@ -142,6 +143,7 @@ def test_what_lacks_nothing_of_the_room_is_found_to_fit() -> None:
     assert np.isinf(measure_workspace_margins(linkages, rows, np.zeros(0))).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further(range(4, 27), [8]))
 def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
     stated = {**statement(generator(1, number), *GROUPS[number % len(GROUPS)]), "max_designs": 2}
@@ -154,6 +156,7 @@ def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
     assert math.isfinite(passed[0].metrics.quality)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further(range(3, 30), [3]))
 def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
     """Exact positions, of which the best slider-cranks without the room all meet what is in the way."""

@@ -171,6 +171,7 @@ class TestNoDesign:
         assert result.search.complete
         assert "rotations about one point" in result.summary
 
+    @pytest.mark.slow
     def test_moving_pivot_with_collinear_images(self) -> None:
         """P goes along a line while the body turns: no pin joint can stand at P, elsewhere it can, and a slider can."""
         positions = [{"x": x, "y": 0.0, "angle": a} for x, a in ((0.0, 0.0), (1.0, 20.0), (3.0, 50.0))]
@@ -217,6 +218,7 @@ class TestPoles:
             assert len(run(positions=positions, input_side={"fixed_pivot": [-3.0, -4.0]}).designs) == 10
 
 
+@pytest.mark.slow
 def test_no_empty_answer_is_complete_where_a_linkage_exists() -> None:
     """Planted linkages stated by their own numbers, edges of regions and limits at their own values included."""
     rng = np.random.default_rng(12)
@@ -291,6 +293,7 @@ def test_the_designs_of_a_wide_search_are_not_neighbours_of_the_best() -> None:
     assert min(apart) > 0.5 * size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["motion", "function", "quick_return", "dwell", "parallel_motion", "steering"])
 def test_answers_of_linkages_tell_what_trades_against_what(kind: str) -> None:
     result = solve(parse_problem(list_examples(kind)[0]))

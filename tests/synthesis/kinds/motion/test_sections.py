@@ -59,6 +59,7 @@ def compared_with_the_oracle(seed: int, count: int) -> set[int]:
     return met
 
 
+@pytest.mark.slow
 def test_number_of_real_dyads_is_exact() -> None:
     assert compared_with_the_oracle(0, 40) == {0, 2, 4}
 
@@ -124,6 +125,7 @@ def test_sliders_are_dyads_at_infinity(kind: str) -> None:
         assert (len(found.dyads.fixed) + len(found.sliders)) % 2 == 0
 
 
+@pytest.mark.slow
 def test_a_double_dyad_is_said_and_counted_once() -> None:
     """Between tasks of four and of two real dyads lies one where two coincide, before they become complex."""
     rng = np.random.default_rng(6)

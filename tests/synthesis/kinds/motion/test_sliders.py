@@ -115,6 +115,7 @@ def check_all(positions: list[dict[str, float]], **more: Any) -> int:
 SIDES = [{"output_side": {"dyad": "PR"}}, {"output_side": {"dyad": "RP"}}, {"input_side": {"dyad": "PR"}}]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", SIDES)
 def test_sliders_carry_the_body_without_a_defect(side: dict[str, Any]) -> None:
     assert check_all(ORDINARY, **side) > 0
@@ -217,6 +218,7 @@ def test_similar_tasks_have_similar_slider_points(turn: float, power: float, x: 
     assert other == pytest.approx(factor * one + shift, rel=1e-8, abs=1e-8 * abs(factor))
 
 
+@pytest.mark.slow
 def test_a_slider_of_five_positions_is_among_the_answers_beside_fourbars() -> None:
     """A slider-crank's own positions: its pin B is a dyad like the three with two pins."""
     o2, a, line = 1.3 + 0.4j, 2.1 + 1.9j, 0.4

@@ -105,6 +105,7 @@ def confirm_tolerated(result: MotionResult, stated: list[dict[str, Any]]) -> Non
         assert least == pytest.approx(design.metrics.min_transmission_angle, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_lid_is_guided_within_its_tolerances() -> None:
     result = run(**HATCH)
     assert len(result.designs) == 10
@@ -146,6 +147,7 @@ def off_planted(n: int, seed: int) -> tuple[list[dict[str, Any]], dict[str, Any]
     return stated, regions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [2, 3, 4])
 @pytest.mark.parametrize("seed", further([0, 1, 2], [0]))
 def test_positions_off_a_planted_linkage_are_answered(n: int, seed: int) -> None:
@@ -158,6 +160,7 @@ def test_positions_off_a_planted_linkage_are_answered(n: int, seed: int) -> None
         assert checks["moving_pivot_region"].passed
 
 
+@pytest.mark.slow
 def test_least_squares_may_be_asked_for_and_exact_positions_too() -> None:
     assert parse_problem({"kind": "motion", **HATCH, "method": "least_squares"}).find_contradictions() == []
     assert run(**HATCH, method="exact").designs == []

@@ -71,6 +71,7 @@ def followed(design: ParallelMotionDesign) -> dict[str, np.ndarray]:
     return constraints.joints(trace.points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LINKAGES)
 def test_the_body_translates_along_the_curve(name: str) -> None:
     problem = stated(*LINKAGES[name])

@@ -78,6 +78,7 @@ def test_a_crank_rocker_in_a_region_is_found(n):
             assert region["y"][0] <= pivot.imag <= region["y"][1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", further([0, 5, 10, 16, 20, 22], [0]))
 def test_members_are_moved_into_demands_that_none_of_them_keeps(n):
     """All constraints 5 % looser than a planted linkage has it: no member that a descent happens to meet keeps them."""

@@ -87,6 +87,7 @@ def test_the_stored_start_is_whole():
     assert gaps.min() > 1e-6
 
 
+@pytest.mark.slow
 def test_planted_linkages_are_among_all_36():
     rng = np.random.default_rng(1)
     for _ in range(30):
@@ -176,6 +177,7 @@ def test_an_empty_answer_is_a_proof():
     assert sum(result.search.rejected.values()) == result.search.candidates
 
 
+@pytest.mark.slow
 def test_points_that_cannot_be_met_exactly_are_fitted_and_that_is_said():
     """Two degrees more than the best exact linkage transmits at."""
     points = positions(ROCKER, np.radians([10.0, 60.0, 110.0, 160.0, 210.0]), OPEN_ASSEMBLY).p

@@ -49,6 +49,7 @@ def crank_rocker(rng):
             return Fourbar(pivots[0], pivots[0] + ground, a, b, c, rng.normal() + 1j * rng.normal())
 
 
+@pytest.mark.slow
 def test_the_start_has_1442_orbits():
     begun = load_nine_point_start()
     assert begun.y.shape == (ORBIT_COUNT, 16)

@@ -49,6 +49,7 @@ def geared(ratio, count=60, turns=1):
 ELEVEN = [2.2, 2.96, 3.38, 3.8, 4.11, 4.46, 5.16, 6.01, 6.46, 6.93, 7.28]
 
 
+@pytest.mark.slow
 def test_eleven_points_of_a_geared_fivebar_are_met():
     """As many points as it has numbers: first descents miss them, and perturbed copies of the best reach them."""
     linkage = make_geared_fivebar(0.0, 2.219, 1.078, 2.409, 3.151, 0.873, -2.0, 0.481, 0.0, 1, -1.426 + 3.824j)
@@ -107,6 +108,7 @@ def test_verification_sees_a_wrong_order():
     assert not design.verification.passed
 
 
+@pytest.mark.slow
 def test_a_slider_cranks_closed_curve_is_recovered():
     points = sliders.coupler_points(SLIDER, TURN, 1).p
     best = answer(points, "slider_crank", method="curve_match", closed=True).designs[0]

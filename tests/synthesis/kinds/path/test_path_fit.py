@@ -61,6 +61,7 @@ def test_crank_phase_and_direction_are_kept(phase, way):
     assert min(abs(math.remainder(stands - sign * 20.0, 360.0)) for sign in (1.0, -1.0)) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_fixed_direction_is_not_turned_round():
     angles = np.linspace(0.0, 330.0, 12)
     points = positions(CRANK_ROCKER, np.radians(-angles) + 0.4, OPEN_ASSEMBLY).p
@@ -68,6 +69,7 @@ def test_a_fixed_direction_is_not_turned_round():
     assert fit(points, angles).designs[0].metrics.max_distance > 1e-2
 
 
+@pytest.mark.slow
 def test_a_planted_path_without_timing_is_recovered():
     points = positions(CRANK_ROCKER, np.array([0.1, 0.5, 0.9, 1.6, 2.0, 2.8, 3.3, 3.9, 4.4, 5.0, 5.5]), OPEN_ASSEMBLY).p
     best = fit(points, closed=True).designs[0]
@@ -105,6 +107,7 @@ def test_verified_sums_agree_with_brute_force(seed, least):
         assert np.all(steps >= 0.0) or np.all(steps <= 0.0)
 
 
+@pytest.mark.slow
 def test_limits_are_hard():
     rng = np.random.default_rng(5)
     angles = np.linspace(0.0, 340.0, 18)
@@ -190,6 +193,7 @@ def test_margins_of_moving_pivots_have_the_derivatives_of_their_places():
             assert np.allclose(gradients[stated, k], slope, rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_given_pivots_are_kept():
     angles = np.linspace(0.0, 330.0, 12)
     points = positions(CRANK_ROCKER, np.radians(angles) + 0.4, OPEN_ASSEMBLY).p
@@ -199,6 +203,7 @@ def test_given_pivots_are_kept():
     assert abs(one.mechanism.fixed_pivots.output[1] - 3.0) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 def test_fits_move_with_the_points(scale):
     rng = np.random.default_rng(1)

@@ -115,6 +115,7 @@ def test_zones_are_of_the_first_point() -> None:
     assert values[0] == pytest.approx(0.1, abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", further([0, 4, 6, 7, 8], [0]))
 def test_a_planted_path_is_answered_in_its_room(number: int) -> None:
     stated = {**statement(generator(1, number), GROUPS[number]), "max_designs": 2}
@@ -125,6 +126,7 @@ def test_a_planted_path_is_answered_in_its_room(number: int) -> None:
         assert violations(stated, design) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [5, 6])
 def test_an_empty_room_changes_nothing(number: int) -> None:
     stated = {**statement(generator(1, number), GROUPS[number]), "max_designs": 2}

@@ -141,6 +141,7 @@ def test_a_hundred_planted_tasks_of_five_timed_points():
     assert agreed >= 0.9 * tasks
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("count", "changes"),
     [

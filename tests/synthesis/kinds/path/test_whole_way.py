@@ -60,6 +60,7 @@ def test_no_design_that_is_wild_between_the_points_is_offered(fitted):
     assert errors == sorted(errors)
 
 
+@pytest.mark.slow
 def test_what_is_stated_of_the_whole_way_is_what_dense_sampling_finds(fitted):
     problem, result = fitted
     points = np.array([point.point for point in problem.points])

@@ -341,6 +341,7 @@ def test_planted_trains_are_found_again(name: str, data: st.DataObject) -> None:
     assert teeth in [design.mechanism.teeth for design in result.designs] or result.ties > 40
 
 
+@pytest.mark.slow
 def test_auto_compares_arrangements_and_members() -> None:
     result = answer(ratio=-2.5, teeth={"min": 17, "max": 30, "ring_max": 90}, max_designs=50)
     assert result.designs[0].metrics.error == 0.0

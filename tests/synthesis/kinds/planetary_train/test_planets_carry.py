@@ -276,6 +276,7 @@ def test_more_trains_of_the_smallest_size_than_are_judged(monkeypatch: pytest.Mo
     assert "Further trains were not checked" in weak.summary
 
 
+@pytest.mark.slow
 def test_where_none_carries_the_strongest_is_told() -> None:
     stated = {**SIMPLE, "modules": [1.0, 1.25]}
     result = solved(**stated, strength={**POWER, "power_kw": 500.0})
@@ -347,6 +348,7 @@ def test_who_is_bent_both_ways(name: str, roles: tuple[str, str, str], bent: set
     assert found == bent
 
 
+@pytest.mark.slow
 def test_bending_of_a_ring_is_judged_with_its_factor_only() -> None:
     stated = {"allowable_bending": [900.0, 40.0], "max_face_width": 16.0}
     free = meshes(made(24, 42, 3), stated)[1]["strength"]
@@ -388,6 +390,7 @@ def test_a_plane_that_carries_nothing_has_no_face() -> None:
     assert ["strength" in mesh for mesh in told] == [False, False, True, True]
 
 
+@pytest.mark.slow
 def test_a_face_that_is_too_narrow_is_seen() -> None:
     problem = problem_of(**SIMPLE, module=1.5, strength=POWER)
     mechanism = solve(problem, lambda fraction, message: None).designs[0].mechanism

@@ -103,6 +103,7 @@ def test_of_exact_springs_the_softest_is_given() -> None:
     assert design.springs[0].rate == pytest.approx(5.0 * GRAVITY * 0.3 / (0.25 * 0.2), rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [lever, lambda rng: lever(rng, both=True), fourbar])
 def test_planted_springs_are_found_exactly(make: Any) -> None:
     rng = np.random.default_rng(11)
@@ -263,6 +264,7 @@ def test_where_the_search_ends_before_anything_is_found_nothing_is_proved(monkey
     )
 
 
+@pytest.mark.slow
 def test_a_search_is_no_worse_than_springs_that_are_known() -> None:
     """Real springs with both ends open: random ones of the set with their best rates, planted by nothing else."""
     problem = problem_of({**SOUGHT, "norm": "max"})

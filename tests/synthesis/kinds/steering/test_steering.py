@@ -210,6 +210,7 @@ def test_limits_are_kept() -> None:
     assert all(design.metrics.min_transmission_angle >= 33.0 - 1e-9 for design in steep.designs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", further([1e-6, 1e6], [1e6]))
 def test_vehicles_of_any_size(size: float) -> None:
     found = answer(wheelbase=2.5 * size, pivot_distance=size, lock=40.0).designs

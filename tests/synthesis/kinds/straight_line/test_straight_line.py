@@ -251,6 +251,7 @@ def test_what_cannot_be_is_not_claimed_to_be_proven() -> None:
     assert not shown[0].verification.passed
 
 
+@pytest.mark.slow
 def test_auto_compares_all_types() -> None:
     result = solved(stated(max_designs=50))
     assert {design.metrics.family for design in result.designs} == set(LINE_MECHANISMS)

@@ -41,6 +41,7 @@ def series(seed: int) -> dict[str, Any]:
     return next(one for one in statements(50, rng) if len(one["units"]) == 2 and "max_stages" not in str(one))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", further(range(6), [0, 3]))
 def test_the_nearest_series_is_that_of_a_brute_force(seed: int) -> None:
     statement = series(seed)
@@ -77,6 +78,7 @@ def _product(mechanism: Any) -> tuple[int, int]:
     return total.numerator, total.denominator
 
 
+@pytest.mark.slow
 def test_designs_are_ordered_and_different() -> None:
     result = solved(25, SET, SET, max_designs=40)
     keys = [(abs(design.metrics.error), design.metrics.total_teeth) for design in result.designs]
