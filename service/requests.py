@@ -24,12 +24,13 @@ def dump_problem(problem: ProblemBase) -> str:
     return problem.model_dump_json(exclude_unset=True)
 
 
-def load_stored_problem(kind: str, stored: str) -> Any:
+def load_stored_problem(kind: str, stored: str) -> ProblemBase:
     """The problem that :func:`dump_problem` has written; raises pydantic's ValidationError where it is none."""
-    return KINDS[kind].problem.model_validate_json(stored)
+    problem: ProblemBase = KINDS[kind].problem.model_validate_json(stored)
+    return problem
 
 
-def check_fields(kind: str, statement: Any) -> tuple[Any, Faults]:
+def check_fields(kind: str, statement: object) -> tuple[Any, Faults]:
     """Validate a problem field by field; return it, or None, and the faults of its fields."""
     try:
         return KINDS[kind].problem.model_validate(statement), []

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import ValidationError
 from pydantic_core import to_json
 
@@ -12,7 +10,7 @@ from service.error_messages import make_sentence
 from service.refusals import refuse_invalid_body, refuse_invalid_mechanism, refuse_invalid_request
 
 
-def analyse(body: Any) -> bytes:
+def analyse(body: object) -> bytes:
     """Analyse the mechanism in a request body.
 
     Raises

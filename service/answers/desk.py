@@ -9,12 +9,14 @@ import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Mapping
-from typing import Any
+from typing import TypeVar
 
 from service.answers import process
 from service.jobs.processes.parent_death import export_parent_pid
 from service.jobs.processes.request_pool import Busy, Limits, PoolMetrics, RequestPool
 from service.observability.logs import Format
+
+T = TypeVar("T")
 
 TEMPLATE_MODULE = "service.answers.template"
 """Module imported by the process from which the others are forked."""
@@ -91,8 +93,8 @@ class AnswerDesk:
         return {pool.name: pool.count_calls() for pool in (self._analyses, self._drawings)}
 
     async def analyse(
-        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any
-    ) -> Any:
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object
+    ) -> T:
         """Call a function that returns an analysis.
 
         Raises
@@ -103,7 +105,7 @@ class AnswerDesk:
         await self._wait_until_loaded()
         return await self._analyses.call(gone, tenant, work, *args)
 
-    async def draw(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+    async def draw(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object) -> T:
         """Call a function that draws, reports or exports; errors as for :meth:`analyse`."""
         return await self._drawings.call(gone, tenant, work, *args)
 

@@ -11,9 +11,10 @@ from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
 from service.error_messages import make_sentence
 from service.refusals import Refusal, refuse_invalid_body, refuse_invalid_request
+from synthesis.model.json_object import JsonObject
 
 
-def compute_design_forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
+def compute_design_forces(job: SolvedJob, number: str, steps: int, body: object) -> bytes:
     """Return the forces in a design as JSON; if ``body`` is None, with the problem's own block.
 
     Raises
@@ -25,7 +26,7 @@ def compute_design_forces(job: SolvedJob, number: str, steps: int, body: Any) ->
         return _compute_forces(job, number, steps, body)
 
 
-def _compute_forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes:
+def _compute_forces(job: SolvedJob, number: str, steps: int, body: object) -> bytes:
     from synthesis.model.dynamics.request import DesignForcesRequest
     from synthesis.model.linkage.problem import LinkageProblem
     from synthesis.results.forces import ForcesUnknownError, compute_forces_over_motion
@@ -55,7 +56,7 @@ def _compute_forces(job: SolvedJob, number: str, steps: int, body: Any) -> bytes
         raise refuse_invalid_request([(error.path, make_sentence(error.detail))]) from None
 
 
-def _compute_own_forces(problem: Any, design: Any, steps: int) -> dict[str, Any]:
+def _compute_own_forces(problem: Any, design: Any, steps: int) -> JsonObject:
     """Return the forces in a design with its own block, over the motion given in its problem."""
     from synthesis.analyses import parse_request
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TypeVar
 
 from fastapi import Request, Response
 
@@ -20,9 +20,11 @@ from service.api.http.problem_details import (
 from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp
 from service.observability.telemetry import measure_span, note_defect
 
+T = TypeVar("T")
+
 
 async def respond_with_analysis(
-    request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., bytes], *args: Any
+    request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., bytes], *args: object
 ) -> Response:
     """Respond with the JSON answer of an analysis.
 
@@ -50,7 +52,7 @@ async def respond_with_analysis(
     return Response(content, headers=packed, media_type="application/json")
 
 
-async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., T], *args: object) -> T:
     """Compute a drawing, a report or an export.
 
     Raises

@@ -14,7 +14,7 @@ import time
 from collections import OrderedDict, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import structlog
 from pydantic_core import from_json
@@ -29,6 +29,7 @@ from service.jobs.processes.stop_flag import SolverStopped, Solving
 from service.jobs.store.database import write_when_reachable
 from service.jobs.store.schema import Claim, format_now
 from service.jobs.store.states import Status
+from synthesis.model.problem import ProblemBase
 
 SLICE_S = 0.1
 """Time after which a slice begins no further sample, seconds."""
@@ -53,7 +54,7 @@ class _PreparedSample:
     """A sample ready to be solved: the problem and its digest, or the fault that prevents it."""
 
     number: int
-    problem: Any = None
+    problem: ProblemBase | None = None
     digest: str | None = None
     fault: faults.Fault | None = None
 
@@ -238,6 +239,7 @@ class SliceSolver:
 
         if prepared.fault is not None:
             return prepared.fault
+        assert prepared.problem is not None
         try:
             with self._solving.track_work(prepared.number):
                 return dispatch.solve(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
 
 import psycopg
 import structlog
@@ -53,7 +52,8 @@ class StoreListener(threading.Thread):
     def _receive_notifications(self) -> None:
         with self._engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
             connection.execute(text(f"LISTEN {self._channel}"))
-            driver: Any = connection.connection.driver_connection
+            driver = connection.connection.driver_connection
+            assert isinstance(driver, psycopg.Connection)
             # Changes before LISTEN took effect were missed: subscribers must read the store once.
             self._told(None)
             while not self._stopping.is_set():

@@ -13,12 +13,14 @@ import hashlib
 import threading
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from service.jobs.processes.request_queue import Call, RequestQueue
 from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
 __all__ = ["Busy", "ClientGone", "GivenUp", "Limits", "PoolMetrics", "ProcessLost", "RequestPool", "hash_call"]
+
+T = TypeVar("T")
 
 MAX_WAIT_S = 20.0
 """Default time that a call waits for its turn, seconds."""
@@ -43,7 +45,7 @@ class PoolMetrics(Protocol):
         ...
 
 
-def hash_call(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
+def hash_call(work: Callable[..., object], args: tuple[object, ...]) -> bytes:
     """Return a hash that is equal for calls of the same function with the same arguments."""
     return hashlib.sha256(repr((work.__module__, work.__qualname__, args)).encode()).digest()
 
@@ -68,8 +70,8 @@ class RequestPool:
     def __init__(
         self,
         name: str,
-        prepare: Callable[..., Any],
-        settings: tuple[Any, ...],
+        prepare: Callable[..., object],
+        settings: tuple[object, ...],
         limits: Limits,
         *,
         hands: int = 1,
@@ -96,7 +98,7 @@ class RequestPool:
         """Return the number of calls by state."""
         return self._queue.count_calls()
 
-    async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+    async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object) -> T:
         """Call a function of a module in a process and return its answer.
 
         Parameters
@@ -112,7 +114,8 @@ class RequestPool:
             And the exceptions of the function.
         """
         try:
-            return await self._wait_for(gone, tenant, work, args)
+            answer: T = await self._wait_for(gone, tenant, work, args)
+            return answer
         except GivenUp as error:
             self._count(error.of)
             raise
@@ -134,7 +137,7 @@ class RequestPool:
             self._metrics.count_given_up(self.name, reason)
 
     async def _wait_for(
-        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], args: tuple[Any, ...]
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., object], args: tuple[object, ...]
     ) -> Any:
         self.begin()
         key = hash_call(work, args)

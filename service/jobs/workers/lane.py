@@ -18,11 +18,11 @@ import signal
 import threading
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
-from typing import Any, Literal
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import pebble
 import structlog
@@ -64,6 +64,9 @@ pebble.CONSTS.term_timeout = 0.3
 
 Reason = Literal["cancelled", "outstayed", "the service stops"]
 """Reason for which a job is stopped early; ``outstayed``: it takes too long for a lane reserved for short jobs."""
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
@@ -316,7 +319,7 @@ class Lane(threading.Thread):
             log.info("job requeued", job=job.job_id, reason="it is longer than expected")
             self._turns.wake()
 
-    def _call(self, function: Any, *args: Any, job: Claim | None = None) -> Any:
+    def _call(self, function: Callable[..., T], *args: object, job: Claim | None = None) -> T:
         """Call a function in the worker and return its answer.
 
         Raises
@@ -341,7 +344,8 @@ class Lane(threading.Thread):
                 self._solving.stop()
         try:
             self._future.add_done_callback(lambda _: self._stirred.set())
-            return self._wait_for_answer(job)
+            answer: T = self._wait_for_answer(job)
+            return answer
         except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
@@ -385,7 +389,7 @@ class Lane(threading.Thread):
             with self._lock:
                 self._stop_job("outstayed")
 
-    def _write_with_retries(self, write: Any, *args: Any, **options: Any) -> Any:
+    def _write_with_retries(self, write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T | None:
         """Write to the store, retrying while it is unreachable: the job would be lost until a restart otherwise."""
         while True:
             try:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -32,6 +31,8 @@ from service.parts.cam.radial import MAX_PIN_PER_ROLLER, ROLLER_COLOUR
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, make_polygon, make_ring, widen_hull
 from service.parts.geometry.solids import Prism
 from service.parts.linkage.builder import measure_keyway_reach
+from synthesis.kinds.cam.design import BarrelCamDesign, BarrelCamMechanism
+from synthesis.kinds.cam.problem import CamProblem
 
 ON_BARREL, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
 UPRIGHT = Carrier(GROUND, "upright")
@@ -83,7 +84,7 @@ class BarrelMotion(ShaftMotion):
         return Placement(np.ones(state.shape, np.complex128), np.asarray(gone, np.complex128))
 
 
-def make_barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_barrel_parts(design: BarrelCamDesign, problem: CamProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a barrel cam.
 
     Parameters
@@ -104,7 +105,7 @@ def make_barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 class _BarrelFitting(Fitting):
     """One request for the parts of a barrel cam."""
 
-    def __init__(self, mechanism: Any, query: PartsQuery, unit: float) -> None:
+    def __init__(self, mechanism: BarrelCamMechanism, query: PartsQuery, unit: float) -> None:
         self._mechanism = mechanism
         lift = max(mechanism.program.s) - min(mechanism.program.s)
         super().__init__(query, unit, max(2.0 * mechanism.cylinder_radius, lift) + lift)
@@ -147,7 +148,7 @@ class _BarrelFitting(Fitting):
 class _Builder:
     """Makes the parts in given sizes; lengths in millimetres."""
 
-    def __init__(self, mechanism: Any, sizes: Sizes, factor: float) -> None:
+    def __init__(self, mechanism: BarrelCamMechanism, sizes: Sizes, factor: float) -> None:
         self._sizes, self._factor = sizes, factor
         self._stack = PlateStack(sizes, ())
         self._sense = 1.0 if mechanism.rotation == "ccw" else -1.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 from pydantic import BaseModel
 
@@ -28,6 +27,7 @@ from service.parts.registry import make_parts
 from service.render import make_heading
 from service.render.page.svg import clean_text
 from service.requests import load_stored_problem
+from synthesis.model.json_object import JsonObject
 from synthesis.registry import KINDS
 
 MAX_CACHED = 4
@@ -42,10 +42,10 @@ class PartsRequest(BaseModel):
     label: str | None
     result: str
     number: int
-    query: dict[str, Any]
+    query: JsonObject
 
 
-def make_file(order: dict[str, Any], file: File) -> bytes | FileRefusal:
+def make_file(order: JsonObject, file: File) -> bytes | FileRefusal:
     """Make a file of a design; return its bytes, or the reason why it does not exist.
 
     Parameters
@@ -78,7 +78,7 @@ def _make_file(order: PartsRequest, file: File) -> bytes:
     return cad.write_step(solids, "assembly") if file == "step" else cad.write_glb(solids, "assembly")
 
 
-def make_item_file(order: dict[str, Any], name: str, form: PartFile) -> bytes | FileRefusal:
+def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | FileRefusal:
     """Make a file of one item of a design.
 
     Parameters
@@ -112,7 +112,7 @@ def _get_process(order: PartsRequest) -> Process:
     return PartsQuery.model_validate(_select_size_options(order)).process
 
 
-def _select_size_options(order: PartsRequest) -> dict[str, Any]:
+def _select_size_options(order: PartsRequest) -> JsonObject:
     """Return the options of the parts themselves, without those of their display."""
     return {name: value for name, value in order.query.items() if name in PartsQuery.model_fields}
 
@@ -124,7 +124,9 @@ def _get_assembly(order: PartsRequest) -> Assembly:
 
 
 @lru_cache(maxsize=MAX_CACHED)
-def _make_assembly(kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, Any], ...]) -> Assembly:
+def _make_assembly(
+    kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, object], ...]
+) -> Assembly:
     design = KINDS[kind].result.model_validate_json(result).designs[number]
     return make_parts(design, load_stored_problem(kind, problem), PartsQuery.model_validate(dict(query)))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,18 +190,15 @@ def _make_shape(body: Body) -> Shape:
     if isinstance(body, TaperedBody):
         body = body.mesh
     if isinstance(body, Mesh):
-        corners: Any = body.corners.tolist()
+        corners = [(float(x), float(y), float(z)) for x, y, z in body.corners]
         return MeshShape(corners=corners, triangles=body.triangles.tolist())
     region = body.section if isinstance(body, TwistedPrism) else body.region
-    upright: dict[str, Any] = {
-        "low": body.low,
-        "high": body.high,
-        "outer": _make_edge(region.outer),
-        "holes": [_make_edge(hole) for hole in region.holes],
-    }
+    low, high = body.low, body.high
+    outer, holes = _make_edge(region.outer), [_make_edge(hole) for hole in region.holes]
     if isinstance(body, TwistedPrism):
-        return TwistedShape(centre=_to_pair(body.centre), twist=math.degrees(body.twist), **upright)
-    return PrismShape(**upright)
+        centre, twist = _to_pair(body.centre), math.degrees(body.twist)
+        return TwistedShape(low=low, high=high, outer=outer, holes=holes, centre=centre, twist=twist)
+    return PrismShape(low=low, high=high, outer=outer, holes=holes)
 
 
 def _make_edge(outline: Outline) -> CircleEdge | CornersEdge:

@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -29,12 +28,14 @@ from service.parts.gears.wheels import JOINT_WALL_RATIO, check_assembly, compute
 from service.parts.geometry.regions import Disc, Outline, Region, widen_hull
 from service.parts.geometry.solids import Prism
 from service.render.gears.planetary_layout import PlanetaryGear, place_planetary_gears
+from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMechanism
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
 POST_COUNT = 4
 """Number of posts of a train whose ring is held by them."""
 
 
-def make_planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a planetary train.
 
     Parameters
@@ -106,7 +107,7 @@ def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement
 class _PlanetaryTask:
     """A train in millimetres, its build, and the sizes of its shafts and plates."""
 
-    mechanism: Any
+    mechanism: PlanetaryMechanism
     arrangement: Arrangement
     speeds: dict[str, float]
     build: Build

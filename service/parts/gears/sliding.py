@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
@@ -31,12 +30,14 @@ from service.parts.gears.wheels import check_assembly, make_wheel_parts
 from service.parts.geometry.regions import Disc, Region
 from service.parts.geometry.solids import Prism
 from service.render.gears.placement import align_mate
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
 
 Teeth = tuple[tuple[tuple[int, int], ...], ...]
 """Driver and driven teeth by stage and pair."""
 
 
-def make_sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_sliding_parts(design: GearboxDesign, problem: GearboxProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a gearbox in the requested speed.
 
     Parameters

@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -45,6 +44,7 @@ from service.render.page.symbols import (
     draw_target,
 )
 from service.render.page.symbols import GROUND as GROUND_COLOUR
+from synthesis.model.design_interface import AnyDesign
 
 LINK_WIDTH, PLATE_EDGE_WIDTH, JOINT_RADIUS = 5.0, 2.4, 4.5
 """Line widths of a bar of the bold linkage and of a plate's edge, and the radius of a joint, pixels."""
@@ -88,7 +88,7 @@ class Scene:
             self.used = linkage.trace_path(used, float(inputs[0]), float(inputs[-1]), SAMPLE_COUNT)
 
     @classmethod
-    def from_design(cls, design: Any) -> Scene:
+    def from_design(cls, design: AnyDesign) -> Scene:
         """Build the scene of a design at its targets, with the path of its point P if it has one."""
         linkage = DrivenLinkage.from_design(design)
         inputs = linkage.find_target_inputs(design)
