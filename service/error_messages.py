@@ -31,7 +31,7 @@ def format_pointer(location: Iterable[str | int]) -> str:
     return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
 
 
-def locate_fault(fault: Mapping[str, Any], body: Any) -> str:
+def locate_fault(fault: Mapping[str, Any], body: object) -> str:
     """Return the JSON pointer to a fault of pydantic in the request.
 
     A location begins with the part of the request; in a body the pointer starts at the body itself.

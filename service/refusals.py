@@ -44,7 +44,7 @@ class Refusal(Exception):
         self.headers = headers
         self.defect = defect
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Pickle the fields: the default would call the constructor with the detail alone."""
         headers = None if self.headers is None else dict(self.headers)
         fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
@@ -52,7 +52,13 @@ class Refusal(Exception):
 
 
 def _restore_refusal(
-    status: int, type_: str, title: str, detail: str, errors: FieldFaults, headers: Any, defect: str | None
+    status: int,
+    type_: str,
+    title: str,
+    detail: str,
+    errors: FieldFaults,
+    headers: dict[str, str] | None,
+    defect: str | None,
 ) -> Refusal:
     name = type_.removeprefix("/problems/")
     return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
@@ -79,13 +85,13 @@ def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     return Refusal(422, "invalid-request", "Invalid request", count_faults(len(errors)), errors=errors)
 
 
-def refuse_invalid_body(error: ValidationError, body: Any) -> Refusal:
+def refuse_invalid_body(error: ValidationError, body: object) -> Refusal:
     """Build the refusal of a body that is validated by this code and not by the framework."""
     faults = error.errors(include_url=False, include_context=False)
     return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body)
 
 
-def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
+def refuse_faults(faults: Sequence[Mapping[str, Any]], body: object) -> Refusal:
     """Build the refusal for pydantic's faults: of a problem, a mechanism or the request, depending on their places."""
     # A union tries several models, which may report the same fault.
     placed = list(dict.fromkeys((locate_fault(fault, body), explain_fault(fault)) for fault in faults))

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import httpx
 
@@ -39,7 +39,7 @@ class AsyncClient:
         """Close the connections."""
         await self._http.aclose()
 
-    async def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
+    async def submit(self, problem: Mapping[str, object], *, label: str | None = None, wait_s: int = 0) -> Job:
         """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(await self._send_request(exchange.build_submission(problem, label, wait_s)))
 
@@ -80,7 +80,7 @@ class AsyncClient:
 
     async def solve(
         self,
-        problem: Mapping[str, Any],
+        problem: Mapping[str, object],
         *,
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,

@@ -33,13 +33,13 @@ class Request(NamedTuple):
     more: Mapping[str, Any] = {}
 
 
-def build_pool_settings(url: str, key: str | None, timeout_s: float) -> dict[str, Any]:
+def build_pool_settings(url: str, key: str | None, timeout_s: float) -> Json:
     """Return the arguments of httpx for a pool of connections to one service."""
     headers = {} if key is None else {"Authorization": f"Bearer {key}"}
     return {"base_url": url, "headers": headers, "timeout": timeout_s}
 
 
-def build_submission(problem: Mapping[str, Any], label: str | None, wait_s: int) -> Request:
+def build_submission(problem: Mapping[str, object], label: str | None, wait_s: int) -> Request:
     """Build the request that submits a problem and waits at most ``wait_s`` (up to 30) seconds for its end."""
     body = {"problem": dict(problem), **({} if label is None else {"label": label})}
     headers = {"Idempotency-Key": uuid.uuid4().hex, **({"Prefer": f"wait={wait_s}"} if wait_s > 0 else {})}
@@ -99,7 +99,7 @@ class EventReader:
         self._name, self._data = "message", ""
         self._id: str | None = None
 
-    def build_request(self) -> dict[str, Any]:
+    def build_request(self) -> Json:
         """Return the arguments of the request for the stream, with the event after which it resumes."""
         self._name, self._data, self._id = "message", "", None
         return {"headers": {} if self._last is None else {"Last-Event-ID": self._last}, "timeout": STREAM_TIMEOUT}

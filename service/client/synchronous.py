@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import httpx
 
@@ -47,7 +47,7 @@ class Client:
         """Close the connections."""
         self._http.close()
 
-    def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
+    def submit(self, problem: Mapping[str, object], *, label: str | None = None, wait_s: int = 0) -> Job:
         """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(self._send_request(exchange.build_submission(problem, label, wait_s)))
 
@@ -102,7 +102,7 @@ class Client:
 
     def solve(
         self,
-        problem: Mapping[str, Any],
+        problem: Mapping[str, object],
         *,
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,
@@ -162,11 +162,11 @@ class Client:
         request = Request("GET", f"/v1/jobs/{job_id}/designs/{design}/motion", {"params": {"steps": steps}})
         return _parse_object(self._send_request(request))
 
-    def analyse(self, mechanism: Mapping[str, Any], motion: Mapping[str, Any]) -> Json:
+    def analyse(self, mechanism: Mapping[str, object], motion: Mapping[str, object]) -> Json:
         """Analyse a given mechanism."""
         return self.analysis({"mechanism": dict(mechanism), "motion": dict(motion)})
 
-    def analysis(self, request: Mapping[str, Any]) -> Json:
+    def analysis(self, request: Mapping[str, object]) -> Json:
         """Send a complete analysis request, which may have further blocks, and return its answer."""
         return _parse_object(self._send_request(Request("POST", "/v1/analyses", {"json": dict(request)})))
 

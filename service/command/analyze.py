@@ -8,10 +8,10 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from service import client as service
 from service.command.inputs import SourceError, read_object
+from synthesis.model.json_object import JsonObject
 
 
 def analyze(source: str, url: str, key: str | None, output: Path | None) -> None:
@@ -42,7 +42,7 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         output.write_text(text, encoding="utf-8", newline="")
 
 
-def _format_table(source: str, answer: dict[str, Any]) -> str:
+def _format_table(source: str, answer: JsonObject) -> str:
     count = len(answer.get("input_angle", ()))
     columns = {name: values for name, values in _iterate_lists("", answer) if len(values) == count > 0}
     if not columns:
@@ -54,7 +54,7 @@ def _format_table(source: str, answer: dict[str, Any]) -> str:
     return text.getvalue()
 
 
-def _iterate_lists(place: str, value: Any) -> Iterator[tuple[str, list[Any]]]:
+def _iterate_lists(place: str, value: object) -> Iterator[tuple[str, list[object]]]:
     """Yield every list of plain values in an answer with its place."""
     if isinstance(value, dict):
         for name, inner in value.items():

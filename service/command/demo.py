@@ -10,9 +10,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 from service.client import Client, ClientError, Job
+from synthesis.model.json_object import JsonObject
 
 START_TIMEOUT_S = 120.0
 """Time limit for the start, seconds; the very first start compiles the numerical kernels."""
@@ -84,7 +84,7 @@ def report(job: Job) -> str:
     return "\n".join(lines)
 
 
-def _check(check: dict[str, Any]) -> str:
+def _check(check: JsonObject) -> str:
     measured = "".join(f"   {key} {check[key]:.3g}" for key in ("value", "limit") if key in check)
     return f"{'passed' if check['passed'] else 'FAILED'}  {check['name']:<22}{measured}".rstrip()
 

@@ -7,8 +7,8 @@ import io
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
+from synthesis.model.json_object import JsonObject
 from synthesis.registry import KINDS
 
 STANDARD_INPUT = "-"
@@ -24,7 +24,7 @@ _TABLES = {name: kind.columns for name, kind in KINDS.items() if kind.columns is
 _SEPARATORS = ",;\t"
 
 
-def read_problem(source: str) -> tuple[dict[str, Any], str | None]:
+def read_problem(source: str) -> tuple[JsonObject, str | None]:
     """Read the problem and its label from a problem, a request body, or a table in a ``.csv`` file."""
     label = None if source == STANDARD_INPUT else Path(source).stem
     if Path(source).suffix.lower() == ".csv":
@@ -36,7 +36,7 @@ def read_problem(source: str) -> tuple[dict[str, Any], str | None]:
     return stated, label
 
 
-def read_object(source: str) -> dict[str, Any]:
+def read_object(source: str) -> JsonObject:
     """Read the JSON object in a file."""
     try:
         stated = json.loads(read_text(source))
@@ -56,7 +56,7 @@ def read_text(source: str) -> str:
         raise SourceError(f"cannot read {source} ({told})") from None
 
 
-def _parse_table(source: str, text: str) -> dict[str, Any]:
+def _parse_table(source: str, text: str) -> JsonObject:
     # The most frequent separator of the header is that of the table.
     head = text.partition("\n")[0]
     rows = csv.DictReader(io.StringIO(text), delimiter=max(_SEPARATORS, key=head.count), skipinitialspace=True)
@@ -74,7 +74,7 @@ def _parse_table(source: str, text: str) -> dict[str, Any]:
     return {"kind": kind, _TABLES[kind].field: [cells for cells in listed if cells]}
 
 
-def _parse_value(source: str, line: int, name: str, cell: str) -> Any:
+def _parse_value(source: str, line: int, name: str, cell: str) -> object:
     try:
         value = json.loads(cell, parse_constant=float)
     except ValueError:

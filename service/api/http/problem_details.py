@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import structlog
 from fastapi import FastAPI, Request
@@ -27,6 +26,7 @@ from service.refusals import (
     refuse_invalid_request,
     refuse_not_found,
 )
+from synthesis.model.json_object import JsonObject
 
 __all__ = [
     "FieldError",
@@ -144,7 +144,7 @@ def refuse_compiling() -> Refusal:
     )  # fmt: skip
 
 
-def describe_responses(**described: str) -> dict[int | str, dict[str, Any]]:
+def describe_responses(**described: str) -> dict[int | str, JsonObject]:
     """Return the error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
     again = {"Retry-After": {"description": "Seconds to wait before the next attempt.", "schema": {"type": "integer"}}}
@@ -216,7 +216,7 @@ def _build_response(
     headers: Mapping[str, str] | None = None,
 ) -> Response:
     telemetry.note_refusal(type_)
-    content: dict[str, Any] = {
+    content: JsonObject = {
         "type": type_,
         "title": title,
         "status": status,

@@ -7,7 +7,6 @@ import math
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from typing import Any
 
 from service.api.http.problem_details import Refusal, refuse_invalid_problem, refuse_invalid_request
 from service.api.routes.batch_schemas import MAX_SAMPLES, BatchRequest, Vary
@@ -93,7 +92,7 @@ def select_default_metrics(metrics: Sequence[str]) -> list[str]:
 
 def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
     """Yield the faults of infinite numbers and NaN anywhere in the problem and the values."""
-    pending: list[tuple[tuple[str | int, ...], Any]] = [
+    pending: list[tuple[tuple[str | int, ...], object]] = [
         (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
     ]
     pending.append((("problem",), body.problem))
@@ -188,7 +187,7 @@ def _find_metric_faults(body: BatchRequest, kind: str) -> Iterator[tuple[str, st
             yield f"/metrics/{k}", "This metric is given twice; give it once."
 
 
-def _build_values(body: BatchRequest) -> list[Sequence[Any]]:
+def _build_values(body: BatchRequest) -> list[Values]:
     if body.sampling == "latin_hypercube":
         assert body.samples is not None
         given = [v.values if v.values is not None else Span(v.from_ or 0, v.to or 0) for v in body.vary]
@@ -240,7 +239,7 @@ def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) 
     return list(found)
 
 
-def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
+def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[object]]]:
     """Yield samples that cover each value: the places of the values new in it, by field, and all its values."""
     if not plan.grid:
         for number in range(plan.total):

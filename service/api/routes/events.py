@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator, Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from fastapi.sse import EventSourceResponse, format_sse_event
@@ -24,6 +24,7 @@ from service.api.routes.jobs import NO_JOB, TAG
 from service.jobs.events.poller import F, Follower, JobPoller
 from service.jobs.store.states import Status
 from service.observability.head import is_head_request
+from synthesis.model.json_object import JsonObject
 
 KEEP_ALIVE_S = 15.0
 """Silence after which a comment is sent, seconds, so that proxies do not take the connection for dead."""
@@ -39,7 +40,7 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-def build_event_schema(item: str) -> dict[str, Any]:
+def build_event_schema(item: str) -> JsonObject:
     """Return the schema of an event whose state is the component ``item``."""
     return {
         "type": "object",
@@ -105,7 +106,7 @@ async def stream_events(
     tenant: str,
     id_: str,
     last_event_id: str | None,
-    shown: Callable[[F], dict[str, Any]],
+    shown: Callable[[F], JsonObject],
     none_such: str,
 ) -> Response:
     """Return the event stream of a job or batch; ``shown`` converts it to JSON-like data with its ``progress``.
@@ -140,7 +141,7 @@ async def _read_current(poller: JobPoller[F], job_id: str, tenant: str) -> F | N
 
 
 async def _generate_events(
-    poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+    poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], JsonObject]
 ) -> AsyncIterator[bytes]:
     """Generate the events of a job. The stream ends with the job, or without an event when the service stops."""
     with poller.follow(job.id, job.tenant) as follower:
@@ -159,7 +160,7 @@ async def _generate_events(
 
 
 def _format_event(
-    follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+    follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], JsonObject]
 ) -> bytes | None:
     """Return the event for a client that has the state ``seen``; None if nothing is new."""
     job = follower.job

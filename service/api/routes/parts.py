@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
@@ -31,6 +31,7 @@ from service.parts.assembly.sizes import (
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_schema import AssemblyView
 from service.parts.export.worker import MAX_PARTS_S, Workshop, make_file, make_item_file
+from synthesis.model.json_object import JsonObject
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
@@ -49,9 +50,9 @@ _MEDIA: dict[File | PartFile, str] = {
 _TEXTS = ("svg", "dxf")
 
 
-def _describe_responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
+def _describe_responses(file: File | PartFile) -> dict[int | str, JsonObject]:
     schema = _TEXT if file in _TEXTS else _BINARY
-    given: dict[str, Any] = {"content": {_MEDIA[file]: {"schema": schema}}}
+    given: JsonObject = {"content": {_MEDIA[file]: {"schema": schema}}}
     if file == "json":
         given = {"model": AssemblyView}
     solid = file == "zip" or file in SOLID_FORMATS
@@ -207,7 +208,7 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
     return found
 
 
-def _build_order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
+def _build_order(job: SolvedJob, number: int, query: JsonObject) -> JsonObject:
     """Return the arguments for the process that makes the parts."""
     stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
@@ -240,7 +241,9 @@ async def _respond_with_file(
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _make_content(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
+async def _make_content(
+    request: Request, bench: Workshop, tenant: str, work: Callable[..., bytes | FileRefusal], *args: object
+) -> bytes:
     """Return the file that the process makes, from the cache if it has made the same before."""
     try:
         made = await bench.run_cached(request.is_disconnected, tenant, work, *args)

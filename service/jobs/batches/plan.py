@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from service.jobs.batches.values import Values, decode_values, encode_values
 from synthesis.model.json_object import JsonObject
@@ -60,11 +59,11 @@ class Plan:
             chosen.append(values[place])
         return chosen[::-1]
 
-    def build_statement(self, number: int) -> Any:
+    def build_statement(self, number: int) -> object:
         """Return the problem of a sample as a client would post it."""
         return self.fill_statement(self.sample(number))
 
-    def fill_statement(self, values: Values) -> Any:
+    def fill_statement(self, values: Values) -> object:
         """Return the problem with these values of the varied fields.
 
         Raises
@@ -72,7 +71,7 @@ class Plan:
         NoSuchPlace
             If a pointer leads nowhere.
         """
-        statement: Any = self.problem
+        statement: object = self.problem
         for steps, value in zip(self._steps, values, strict=True):
             statement = _copy_with(statement, steps, value)
         return statement
@@ -111,7 +110,7 @@ def split_pointer(pointer: str) -> list[str]:
     return [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
 
 
-def _copy_with(value: Any, way: Sequence[str], new: object) -> Any:
+def _copy_with(value: object, way: Sequence[str], new: object) -> object:
     """Return a copy of ``value`` with ``new`` at the end of the path ``way``; missing objects are created."""
     if not way:
         return new
