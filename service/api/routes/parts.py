@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, get_args
+from typing import Annotated, NamedTuple, get_args
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
@@ -87,7 +87,7 @@ async def make_parts(
     arranged in planes for these sizes, and a design whose parts would collide in the motion is refused. `print` and
     `mill` need the service's extra `cad`; without it `laser` has no STEP file.
     """
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "zip")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "zip"))
 
 
 @router.get(
@@ -102,7 +102,7 @@ async def export_assembly_step(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number``, in millimetres, with names and colours (AP242)."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "step")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "step"))
 
 
 @router.get(
@@ -117,7 +117,7 @@ async def export_assembly_glb(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number`` as binary glTF: in metres, with the shafts upwards along y."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "glb")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "glb"))
 
 
 @router.get(
@@ -136,7 +136,7 @@ async def view_assembly(
     The motion of each moving body is given once, as a rotation about a pivot and the position of the pivot. `lift` is
     the displacement of a part in the exploded view. No CAD is needed; the refusals are those of `parts`.
     """
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "json")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "json"))
 
 
 @router.get(
@@ -151,7 +151,7 @@ async def draw_assembly(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return an isometric picture of the parts of design ``number``, assembled and exploded."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "svg")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "svg"))
 
 
 _FORMS: dict[PartFile, str] = {
@@ -169,7 +169,7 @@ def _add_part_route(form: PartFile) -> None:
         request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, name: str,
         query: Annotated[PartsQuery, Query()],
     ) -> Response:  # fmt: skip
-        return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, form, name)
+        return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, form, name))
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}/parts/{{name}}.{form}",
@@ -199,7 +199,7 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
     for n in range(len(designs)):
         try:
             found[n] = (
-                await _make_content(request, bench, tenant, make_file, _build_order(job, n, {}), "svg")
+                await _make_content(request, bench, tenant, make_file, _build_arguments(job, n, {}), "svg")
             ).decode()
         except Refusal as refusal:
             if refusal.status not in (409, 422):
@@ -208,16 +208,25 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
     return found
 
 
-def _build_order(job: SolvedJob, number: int, query: JsonObject) -> JsonObject:
+def _build_arguments(job: SolvedJob, number: int, query: JsonObject) -> JsonObject:
     """Return the arguments for the process that makes the parts."""
     stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
 
 
+class _FileOrder(NamedTuple):
+    """Number of the design in the path, options, format, and the part if the file is that of one part."""
+
+    number: str
+    query: PartsQuery
+    file: File | PartFile
+    part: str | None = None
+
+
 async def _respond_with_file(
-    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
-    file: File | PartFile, part: str | None = None,
-) -> Response:  # fmt: skip
+    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, order: _FileOrder
+) -> Response:
+    number, query, file, part = order
     job = await get_solved_job(desk, tenant, job_id)
     n = await run_in_threadpool(_check_design_number, job.result, number)
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
@@ -225,12 +234,12 @@ async def _respond_with_file(
             501, "no-cad", "No CAD",
             "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
         )  # fmt: skip
-    order = _build_order(job, n, query.model_dump(exclude_unset=True))
+    arguments = _build_arguments(job, n, query.model_dump(exclude_unset=True))
     with measure_span("parts"):
         if part is None:
-            content = await _make_content(request, bench, tenant, make_file, order, file)
+            content = await _make_content(request, bench, tenant, make_file, arguments, file)
         else:
-            content = await _make_content(request, bench, tenant, make_item_file, order, part, file)
+            content = await _make_content(request, bench, tenant, make_item_file, arguments, part, file)
     names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}

@@ -18,7 +18,17 @@ from typing import Any, Protocol, TypeVar
 from service.jobs.processes.request_queue import Call, RequestQueue
 from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
-__all__ = ["Busy", "ClientGone", "GivenUp", "Limits", "PoolMetrics", "ProcessLost", "RequestPool", "hash_call"]
+__all__ = [
+    "Busy",
+    "ClientGone",
+    "GivenUp",
+    "Limits",
+    "PoolMetrics",
+    "ProcessLost",
+    "ProcessStart",
+    "RequestPool",
+    "hash_call",
+]
 
 T = TypeVar("T")
 
@@ -57,27 +67,23 @@ class RequestPool:
     ----------
     name : str
         Name of the threads and processes, and label in the metrics.
-    prepare : callable
-        First call in a process, with ``settings``; it restricts the process and limits its memory.
+    start : ProcessStart
+        How processes are started and prepared.
     hands : int
         Maximum number of concurrent calls, of which at most ``max_long`` may be long; by default all.
     wait_s : float
         Time that a call waits for its turn, seconds.
-    forks : callable
-        See :class:`~service.jobs.processes.request_worker.ProcessStart`; by default processes are spawned.
     """
 
     def __init__(
         self,
         name: str,
-        prepare: Callable[..., object],
-        settings: tuple[object, ...],
+        start: ProcessStart,
         limits: Limits,
         *,
         hands: int = 1,
         max_long: int | None = None,
         wait_s: float = MAX_WAIT_S,
-        forks: Callable[[], bool] = lambda: False,
         metrics: PoolMetrics | None = None,
     ) -> None:
         self.name = name
@@ -85,7 +91,6 @@ class RequestPool:
         self._beginning = threading.Lock()
         self._queue = RequestQueue(hands if max_long is None else max_long)
         self._asked: dict[bytes, tuple[Call, asyncio.Future[Any]]] = {}
-        start = ProcessStart(prepare, settings, forks)
         self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]
 
     def begin(self) -> None:

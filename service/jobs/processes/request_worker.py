@@ -77,17 +77,22 @@ class Limits:
     short_s: float | None = None
 
 
+def _return_false() -> bool:
+    return False
+
+
 @dataclass(frozen=True)
 class ProcessStart:
     """Start of the processes of a pool.
 
+    ``prepare`` is the first call in a process, with ``settings``; it restricts the process and limits its memory.
     ``forks`` returns whether they are forked from a process that has loaded the libraries
     (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are spawned.
     """
 
     prepare: Callable[..., object]
     settings: tuple[object, ...]
-    forks: Callable[[], bool]
+    forks: Callable[[], bool] = _return_false
 
     def start_process(self, name: str) -> tuple[BaseProcess, Connection]:
         """Start a process, which prepares itself after the return, and return it with the pipe to it."""

@@ -22,7 +22,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
-from typing import Any, Literal, ParamSpec, TypeVar
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 
 import pebble
 import structlog
@@ -79,6 +79,13 @@ class WorkerLost(Exception):
         super().__init__(reason)
 
 
+class Stores(NamedTuple):
+    """Stores that a lane writes to when its worker has died or was stopped."""
+
+    jobs: JobStore
+    batches: BatchStore
+
+
 class Lane(threading.Thread):
     """Runs the jobs that the scheduler assigns to it, one at a time, in its own worker process.
 
@@ -90,8 +97,7 @@ class Lane(threading.Thread):
         self,
         name: str,
         turns: Turns,
-        store: JobStore,
-        batches: BatchStore,
+        stores: Stores,
         settings: worker.WorkerSettings,
         timeout_s: float,
         changed: Changed,
@@ -100,8 +106,7 @@ class Lane(threading.Thread):
     ) -> None:
         super().__init__(name=name, daemon=True)
         self._turns = turns
-        self._store = store
-        self._batches = batches
+        self._store, self._batches = stores
         self._settings = settings
         self._timeout_s = timeout_s
         self._changed = changed

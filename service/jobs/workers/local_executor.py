@@ -10,7 +10,7 @@ from service.jobs.batches.store import BatchStore
 from service.jobs.executor import Changed
 from service.jobs.job_store import JobStore
 from service.jobs.store.database import connect
-from service.jobs.workers.lane import Lane
+from service.jobs.workers.lane import Lane, Stores
 from service.jobs.workers.scheduler import Turns
 from service.jobs.workers.worker import WorkerSettings
 from service.observability.metrics import WorkerMetrics
@@ -62,8 +62,7 @@ class LocalExecutor:
             lane = Lane(
                 f"lane-{n}",
                 self._turns,
-                self._store,
-                BatchStore(self._engine),
+                Stores(self._store, BatchStore(self._engine)),
                 for_workers,
                 self._settings.job_timeout_s,
                 self._notify_subscriber,

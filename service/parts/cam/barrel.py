@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault, name_part
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
@@ -237,7 +237,7 @@ class _Builder:
         ends = self._uprights[0][0], self._uprights[1][1]
         parts = [
             barrel,
-            *make_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, seats=[seat], stub=STUB_LENGTH * pin),
+            *make_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, PinShape([seat], STUB_LENGTH * pin)),
         ]
         told = self._key.standard and f"{self._key.standard} x {high - low:.4g}"
         key = (Prism(Region(make_key_section(0j, pin, self._key)), low, high),)

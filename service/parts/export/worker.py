@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TypeVar
 
 from service.jobs.processes.limits import limit_memory, restrict_process
-from service.jobs.processes.request_pool import Limits, PoolMetrics, RequestPool, hash_call
+from service.jobs.processes.request_pool import Limits, PoolMetrics, ProcessStart, RequestPool, hash_call
 from service.jobs.workers.worker import LIBRARIES_MB
 from service.observability.logs import Format
 from service.parts.assembly.sizes import File, FileRefusal, PartFile
@@ -50,7 +50,9 @@ class Workshop:
         metrics: PoolMetrics | None = None,
     ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
-        self.pool = RequestPool("parts", _prepare, settings, Limits(min(timeout_s, MAX_PARTS_S)), metrics=metrics)
+        self.pool = RequestPool(
+            "parts", ProcessStart(_prepare, settings), Limits(min(timeout_s, MAX_PARTS_S)), metrics=metrics
+        )
         self._kept: OrderedDict[bytes, bytes] = OrderedDict()
 
     async def run_cached(

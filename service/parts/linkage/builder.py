@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.linkage.layout import Division, Piece, list_pieces
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Assembly, Carrier, Part, simplify_name
 from service.parts.assembly.plate_stack import STUB_LENGTH
@@ -480,8 +480,8 @@ class _Builder:
         # The shaft has a keyway at every plate that rotates with it.
         seats = [Prism(section, *self._get_level(plane)) for plane in keyed]
         parts = make_pin(
-            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats,
-            stub=STUB_LENGTH * self._sizes.pin if driven else 0.0, upside_down=driven,
+            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes,
+            PinShape(seats, STUB_LENGTH * self._sizes.pin if driven else 0.0, driven),
         )  # fmt: skip
         parts += [self._make_key(name, carrier, place, plane) for plane in keyed]
         for span in spans:

@@ -20,7 +20,7 @@ from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Slide
 from service.render.linkage.motion import Demand, DrivenLinkage
 from service.render.linkage.styles import GHOST_LINE, GROUND_LINE, TARGET_CURVE, USED_PATH, WHOLE_PATH, Style
-from service.render.page.labels import Labels
+from service.render.page.labels import Label, Labels
 from service.render.page.sheet import draw_clipping_panel, fit_panel
 from service.render.page.svg import (
     Box,
@@ -217,13 +217,11 @@ def draw_scene(shown: Scene, view: Viewport, unit: str) -> Element:
         group.add(symbol)
     for demand in shown.demands:
         labels.place(
-            view.point(demand.point), f"{demand.index + 1}", 11.0, clearance=9.0, ring=CURVE, style={"fill": CURVE}
+            view.point(demand.point), Label(f"{demand.index + 1}", 11.0, {"fill": CURVE}, ring=CURVE), clearance=9.0
         )
     for name, place in shown.get_joints(0).items():
-        labels.place(
-            view.point(place), name[0], 13.0, subscript=name[1:], clearance=8.0, away=-1j,
-            style={"fill": INK, "font-weight": "bold"},
-        )  # fmt: skip
+        label = Label(name[0], 13.0, {"fill": INK, "font-weight": "bold"}, name[1:])
+        labels.place(view.point(place), label, clearance=8.0, away=-1j)
     bar, covered = draw_scale_bar(view, unit)
     labels.reserve(covered)
     return group.add(*labels.drawn, bar)
