@@ -62,7 +62,8 @@ jobs that arrive at the same time may share a turn."""
 _MAX_CONCURRENT_INSERTS = 500
 """More than the number of concurrent inserts of all servers: this far below its limit, a queue needs no exact count."""
 
-_UNLIMITED = 1 << 30
+_NO_LIMIT = 1 << 30
+"""Limit of a queue without one; no queue gets as long."""
 
 _MAX_MESSAGE_LENGTH = 200  # the width of its column
 
@@ -326,7 +327,7 @@ def _is_stored(connection: Connection, job_id: str) -> bool:
 
 def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
-    most = _UNLIMITED if max_queued is None else max_queued
+    most = _NO_LIMIT if max_queued is None else max_queued
     asked = {"of": row["tenant"], "most": most}
     # SQLite has one writer at a time, so its inserts need no further order.
     postgresql = connection.dialect.name == "postgresql"

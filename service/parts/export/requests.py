@@ -18,8 +18,8 @@ from service.parts.assembly.sizes import (
     Process,
     ViewQuery,
 )
+from service.parts.drawings.depth_buffer import draw_rendered_sheet
 from service.parts.drawings.isometric import draw_isometric_sheet
-from service.parts.drawings.rendered import draw_rendered_sheet
 from service.parts.export import cad
 from service.parts.export.viewer_model import list_files, make_view
 from service.parts.export.zip_package import write_item_file, write_package

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from service.parts.assembly.items import list_items
 from service.parts.assembly.model import SHEET_SORTS, Assembly, Carrier, Frame, Motion, Part
 from service.parts.assembly.sizes import NotMade, PartFile
-from service.parts.drawings.exploded import compute_lifts
+from service.parts.drawings.exploded_view import compute_lifts
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_schema import (
     AssemblyView,

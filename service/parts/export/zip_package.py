@@ -27,9 +27,9 @@ from service.parts.assembly.model import SHEET_SORTS, Assembly
 from service.parts.assembly.sizes import PartFile, Process
 from service.parts.drawings.assembly_sheet import draw_assembly_sheet
 from service.parts.drawings.assembly_sheet_crossed import draw_crossing_sheet
+from service.parts.drawings.depth_buffer import draw_rendered_sheet
 from service.parts.drawings.dxf import write_cutting_dxf
 from service.parts.drawings.isometric import draw_isometric_sheet
-from service.parts.drawings.rendered import draw_rendered_sheet
 from service.parts.export import cad
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_model import list_files

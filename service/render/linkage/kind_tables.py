@@ -19,7 +19,7 @@ from service.render.linkage.fourbar import build_scene as fourbar_scene
 from service.render.linkage.fourbar_picture import FourbarPicture, describe_fourbar
 from service.render.linkage.function_diagram import draw_range_arc, make_function_diagram
 from service.render.linkage.motion import DrivenLinkage, get_stance_curve, get_target_curve, list_demands
-from service.render.linkage.sprung import make_spring_balancing
+from service.render.linkage.spring_balancing import make_spring_balancing
 from service.render.linkage.styles import STANCE_LINE
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
