@@ -19,15 +19,16 @@ def analyse(body: object) -> bytes:
         422, with the place of each fault.
     """
     from kinematics import errors as kinematics
-    from synthesis.analyses import parse_request
+    from synthesis.analyses import get_family
     from synthesis.analyses.budget import BudgetError
     from synthesis.mechanisms import MechanismError
 
     with refuse_numerical_errors():
+        model = get_family(body.get("mechanism") if isinstance(body, dict) else None).request
         try:
-            request = parse_request(body)
+            request = model.model_validate(body)
         except ValidationError as error:
-            raise refuse_invalid_body(error, body) from None
+            raise refuse_invalid_body(error, body, model) from None
         contradictions = request.find_errors()
         if contradictions:
             raise refuse_invalid_request([(path, make_sentence(detail)) for path, detail in contradictions])

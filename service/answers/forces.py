@@ -47,7 +47,7 @@ def _compute_forces(job: SolvedJob, number: str, steps: int, body: object) -> by
             stated = DesignForcesRequest.model_validate(body).dynamics
             stated.fill_from_layout(problem.layout)
         except ValidationError as error:
-            raise refuse_invalid_body(error, body) from None
+            raise refuse_invalid_body(error, body, DesignForcesRequest) from None
     try:
         return to_json(compute_forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
     except ForcesUnknownError as error:

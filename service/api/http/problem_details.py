@@ -8,13 +8,14 @@ import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from service.error_messages import MAX_FAULTS
+from service.error_messages import MAX_FAULTS, Models
 from service.jobs.store.database import is_unreachable
 from service.observability import telemetry
 from service.refusals import (
@@ -173,7 +174,21 @@ async def _respond_to_refusal(request: Request, refusal: Exception) -> Response:
 
 async def _respond_to_invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    return await _respond_to_refusal(request, refuse_faults(error.errors(), error.body))
+    return await _respond_to_refusal(request, refuse_faults(error.errors(), error.body, _get_models(request)))
+
+
+def _get_models(request: Request) -> Models:
+    """Return the models of the body and of the query that the operation of a request declares."""
+    route = request.scope.get("route")
+    if not isinstance(route, APIRoute):
+        return {}
+    models: dict[str, object] = {}
+    if route.body_field is not None:
+        models["body"] = route.body_field.field_info.annotation
+    # A query with a model has no other parameters, and only such a query refuses unknown ones.
+    for parameter in route.dependant.query_params:
+        models["query"] = parameter.field_info.annotation
+    return models
 
 
 async def _respond_to_http_error(request: Request, error: Exception) -> Response:
