@@ -175,8 +175,10 @@ def _classify_error(error: service.ClientError, cancel: threading.Event | None) 
     if isinstance(error, service.JobFailed) and error.job.status == "cancelled":
         return Cancelled(str(error))
     if isinstance(error, service.Refused):
+        # Deleting a job that has just ended removes it; the client then finds no job.
         if cancel is not None and cancel.is_set() and error.status == 404:
             return Cancelled("the job had already ended when it was cancelled, and was removed")
+        # Faults elsewhere, such as in the label, are no faults of the problem.
         if error.status == 422 and error.errors and all(_is_in_problem(path) for path in error.errors):
             return InvalidProblem({path.removeprefix(_PROBLEM_POINTER): told for path, told in error.errors.items()})
     return error

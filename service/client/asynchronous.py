@@ -59,6 +59,7 @@ class AsyncClient:
             try:
                 async with self._http.stream("GET", following.path, **following.build_request()) as answer:
                     if not following.check_opened(answer) and not following.ended:
+                        # The body of a stream is not read by itself, and it has the reason.
                         await answer.aread()
                         raise exchange.build_refusal(answer)
                     async for line in answer.aiter_lines():
@@ -68,6 +69,7 @@ class AsyncClient:
                             return
             except (Refused, httpx.TransportError) as error:
                 fault = error
+            # A stream may also end without an error, for example when the service stops.
             if not following.ended:
                 await asyncio.sleep(following.handle_break(fault))
 
@@ -97,6 +99,7 @@ class AsyncClient:
             job = await self.wait(job.id, progress)
         except ClientError:
             raise
+        # A cancelled task, or an error of the progress callback: nothing waits for the job any more.
         except BaseException:
             with suppress(ClientError, RuntimeError):  # RuntimeError if the connections are already closed
                 await self.delete(job.id)
@@ -108,6 +111,7 @@ class AsyncClient:
         try:
             return (await self._send_request(exchange.build_file_request(job_id, design, form))).content
         except Refused as refusal:
+            # The caller knows the job, so that only its file can be missing.
             if refusal.status == 404:
                 return None
             raise

@@ -31,6 +31,7 @@ class Refused(ClientError):
         self.status = status
         self.type = str(problem.get("type", "about:blank"))
         self.detail = str(problem.get("detail", ""))
+        # The keys are unique paths: of several faults at one place the last one is kept.
         self.errors = {str(fault["path"]): str(fault["detail"]) for fault in problem.get("errors") or ()}
         lines = [f"{status}: {self.detail}", *(f"  {path or '/'}: {detail}" for path, detail in self.errors.items())]
         super().__init__("\n".join(lines))

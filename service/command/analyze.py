@@ -28,6 +28,7 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         If the service does not analyse it.
     """
     stated = read_object(source)
+    # The motion may be left out: the service has a default.
     request = stated if "mechanism" in stated else {"mechanism": stated}
     if not isinstance(request["mechanism"], dict):
         raise SourceError(f"{source} contains no mechanism")
@@ -39,6 +40,7 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         sys.stdout.write(text)
     else:
         output.parent.mkdir(parents=True, exist_ok=True)
+        # Written as it is: CSV already has its line ends.
         output.write_text(text, encoding="utf-8", newline="")
 
 

@@ -105,6 +105,7 @@ def _start_service() -> Iterator[str]:
             "MECHSYNTH_RESERVE": "0",
             "MECHSYNTH_COMPILE_AHEAD": "false",
         }
+        # The demonstration must never write into the operator's store.
         environment.pop("MECHSYNTH_DATABASE_URL", None)
         announced = Path(folder) / "announced"
         with announced.open("wb") as stdout:
@@ -125,6 +126,7 @@ def _start_service() -> Iterator[str]:
 def _wait_for_url(server: subprocess.Popen[bytes], announced: Path) -> str:
     deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
+        # The port is chosen by the system, so only the announcement has it.
         words = announced.read_text().split()
         if words and words[-1].startswith("http"):
             return words[-1]

@@ -50,6 +50,7 @@ def read_object(source: str) -> JsonObject:
 def read_text(source: str) -> str:
     """Read the text of a file or of standard input."""
     try:
+        # Spreadsheets put a byte order mark first, which `utf-8-sig` skips.
         return sys.stdin.read() if source == STANDARD_INPUT else Path(source).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         told = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
@@ -67,6 +68,7 @@ def _parse_table(source: str, text: str) -> JsonObject:
         raise SourceError(f"{source}: the first line must name the columns: {known}")
     listed = []
     for row in rows:
+        # The csv module collects surplus cells under None.
         if None in row:
             raise SourceError(f"{source}, line {rows.line_num}: more cells than columns")
         cells = ((name.strip(), (cell or "").strip()) for name, cell in row.items())
@@ -76,6 +78,7 @@ def _parse_table(source: str, text: str) -> JsonObject:
 
 def _parse_value(source: str, line: int, name: str, cell: str) -> object:
     try:
+        # As JSON, so that tables and JSON files accept the same numbers.
         value = json.loads(cell, parse_constant=float)
     except ValueError:
         value = None

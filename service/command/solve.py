@@ -77,6 +77,7 @@ def _create_console() -> Console:
 
 
 def _solve_with_progress(client: service.Client, problem: JsonObject, label: str | None) -> service.Job:
+    # Brief problems end within this second and need no bar.
     job = client.submit(problem, label=label, wait_s=1)
     if not job.finished:
         with _cancel_on_interrupt(client, job.id), _create_bar() as bar:
@@ -92,12 +93,14 @@ def _cancel_on_interrupt(client: service.Client, job_id: str) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
+        # Left alone, the job might keep a worker busy for minutes.
         client.delete(job_id)
         raise SolveFailure("interrupted; the job is cancelled") from None
 
 
 def _create_bar() -> Progress:
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
+    # On standard error, so that the output can be redirected to a file.
     return Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True)
 
 
@@ -189,6 +192,7 @@ def _write_drawings(client: service.Client, job: service.Job, folder: Path, form
         for form in forms:
             content = client.file(job.id, n, form)
             if content is not None:
+                # Only now, so that an answer without files leaves no empty folder.
                 folder.mkdir(parents=True, exist_ok=True)
                 (folder / f"design-{n + 1}.{form}").write_bytes(content)
                 yield f"design-{n + 1}.{form}"

@@ -116,6 +116,7 @@ async def stream_events(
     Refusal
         503 if too many clients of the tenant listen or the store does not answer; 404 if the tenant has no such job.
     """
+    # Every stream keeps a connection open; one tenant must not use up those of all.
     if poller.count_listeners(tenant) >= MAX_LISTENERS:
         raise Refusal(
             503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening; try again.",
@@ -125,8 +126,10 @@ async def stream_events(
     if job is None or job.tenant != tenant:
         raise refuse_not_found(none_such)
     seen = _parse_event_id(last_event_id)
+    # The client has the last event; a stream without events would make browsers reconnect for ever.
     if job.status.finished and seen == (job.revision, job.status):
         return Response(status_code=204)
+    # HEAD gets the headers at once; the stream would end only with the job.
     if is_head_request(request.scope):
         return EventSourceResponse(_generate_nothing(), headers=_HEADERS)
     return EventSourceResponse(_generate_events(poller, job, seen, shown), headers=_HEADERS)
@@ -166,6 +169,7 @@ def _format_event(
     job = follower.job
     if job is None:
         return format_sse_event(event="removed", data_str="{}")
+    # The client may be ahead of the last look of this server at the store.
     if seen is not None and job.revision <= seen[0]:
         return None
     state = seen is None or seen[1] != job.status
@@ -173,6 +177,7 @@ def _format_event(
         event="state" if state else "progress",
         data_str=to_json(shown(job) if state else shown(job)["progress"]).decode(),
         id=f"{job.revision}-{job.status.value}",
+        # Once is enough: browsers keep the time for the whole stream.
         retry=_RECONNECT_MS if seen is None else None,
     )
 

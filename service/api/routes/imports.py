@@ -159,5 +159,6 @@ async def import_curves(
         tolerance=tolerance,
         max_points=max_points,
         pixel_size=pixel_size,
+        # Nearly any text is a table, so only bodies announced as one, or as nothing in particular, are read as tables.
         tables=media_type in ("", *TABLE_TYPES, *ANY_FORMAT_TYPES),
     )
