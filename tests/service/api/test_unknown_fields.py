@@ -36,7 +36,7 @@ def test_fields_are_suggested_at_every_depth(client):
 def test_few_fields_are_listed_if_none_is_similar(client):
     problem = {**MOTION, "positions": [{**position, "q": 1} for position in MOTION["positions"]]}
     details = set(read_errors(client.post("/v1/jobs", json={"problem": problem})).values())
-    assert details == {"Unknown field; the fields are `x`, `y` and `angle`."}
+    assert details == {"Unknown field; the fields are `x`, `y`, `angle`, `tolerance` and `exact`."}
 
 
 def test_many_fields_are_not_listed(client):
@@ -58,7 +58,7 @@ def test_analyses_suggest_the_fields_of_their_family(client, family):
 
 
 def test_queries_suggest_their_parameters(client):
-    answer = client.get("/v1/jobs/01K6WM2B7Q3W9Z0V5N8XJ4R1TD/designs/0/parts.zip?thicknes=3")
+    answer = client.get("/v1/jobs/01K6WM2B7Q3W9Z0V5N8XJ4R1TD/designs/0/parts?thicknes=3")
     assert read_errors(answer) == {"/query/thicknes": "Unknown field; did you mean `thickness`?"}
 
 
