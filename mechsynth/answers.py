@@ -126,6 +126,7 @@ class Design:
         mechanism = self.mechanism.model_dump(mode="json")
         return Cycle.from_lists(get_family(mechanism).request.analyze_cycle(mechanism, steps))
 
+    # Notebooks call this method and the next one.
     def _repr_svg_(self) -> str:
         return self.draw()
 

@@ -118,6 +118,7 @@ def _start_service() -> Iterator[str]:
             server.terminate()
             try:
                 server.wait(STOP_TIMEOUT_S)
+            # The service must not outlive the demonstration.
             except subprocess.TimeoutExpired:
                 server.kill()
                 server.wait()

@@ -33,6 +33,7 @@ def draw(source: str, number: int, output: Path) -> None:
     problem, designs = _read_answer(source, job)
     if not 1 <= number <= len(designs):
         raise SourceError(f"design {number} does not exist; {source} has designs 1 to {len(designs)}")
+    # The command line counts from 1, the API from 0.
     design = designs[number - 1]
     try:
         content = export_design(design, problem, make_heading(problem, job.get("label"), number - 1), form)

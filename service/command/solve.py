@@ -109,6 +109,7 @@ def report(job: service.Job, console: Console) -> None:
     result = job.result or {}
     search, designs = result["search"], result["designs"]
     known = "complete: no other designs exist" if search["complete"] else "not complete: other designs may exist"
+    # Texts of the service may contain square brackets, which rich would take as markup.
     console.print(result["summary"], markup=False, highlight=False)
     console.print(f"Search: {search['method']}, {known}.", markup=False, highlight=False)
     if not designs:

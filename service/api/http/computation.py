@@ -40,6 +40,7 @@ async def respond_with_analysis(
                 work, args = compute_packed, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
+        # 422: the client has sent this mechanism and can make it smaller.
         limit = f"time limit of {CPU_S:g} s" if error.of == "time" else "memory limit"
         detail = f"The analysis exceeded its {limit}; check all sizes and counts."
         raise refuse_invalid_mechanism([("/mechanism", detail)]) from None
@@ -64,6 +65,7 @@ async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work:
     try:
         return await answers.draw(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
+        # 409: the design is stored, and no change of the request makes it smaller.
         limit = f"time limit of {DRAWING_CPU_S:g} s" if error.of == "time" else "memory limit"
         raise Refusal(409, "no-drawing", "No drawing", f"The drawing exceeded its {limit}.") from None
     except Busy:

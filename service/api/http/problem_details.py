@@ -133,6 +133,7 @@ def refuse_busy(with_what: str) -> Refusal:
 
 def refuse_gone() -> Refusal:
     """Build the refusal for a client that has disconnected; it appears only in the log and the metrics."""
+    # HTTP has no status for this; 499 is nginx's.
     return Refusal(499, "gone", "Gone", "The client has disconnected.")
 
 
@@ -151,6 +152,7 @@ def describe_responses(**described: str) -> dict[int | str, JsonObject]:
     again = {"Retry-After": {"description": "Seconds to wait before the next attempt.", "schema": {"type": "integer"}}}
     return {
         int(name[1:]): {"description": text, "content": content}
+        # Only these two errors pass by themselves.
         | ({"headers": again} if name in ("e429", "e503") else {})
         for name, text in described.items()
     }
@@ -193,6 +195,7 @@ def _get_models(request: Request) -> Models:
 
 async def _respond_to_http_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
+    # The framework's own errors: no route has this path, or none has this method.
     if error.status_code == 404:
         return _build_response(request, 404, "/problems/not-found", "Not found", "No such resource; check the path.")
     if error.status_code == 405:
@@ -209,6 +212,7 @@ async def _respond_to_http_error(request: Request, error: Exception) -> Response
 
 
 async def _respond_to_store_error(request: Request, error: Exception) -> Response:
+    # A wrong statement is a defect of the service and becomes a 500.
     if not is_unreachable(error):
         raise error
     log.warning("the store does not answer", error=type(error).__name__)

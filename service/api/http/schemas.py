@@ -27,6 +27,7 @@ Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, exam
 
 def _check_printable(label: str) -> str:
     if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
+        # PostgreSQL cannot store NUL, and UTF-8 cannot encode surrogates.
         raise ValueError("the label must not contain NUL or lone surrogates")
     return label
 

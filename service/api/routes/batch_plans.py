@@ -58,6 +58,7 @@ def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
         # The kind selects the model, so nothing else can be checked without it.
         detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
         raise refuse_invalid_problem([("/problem/kind", detail)])
+    # The plan is stored as JSON, which has no such numbers.
     faults = [*islice(_find_nonfinite_numbers(body), MAX_FAULTS)]
     if faults:
         raise refuse_invalid_request(faults)
@@ -73,6 +74,7 @@ def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
         body.reuse,
     )
     _require_places(plan)
+    # Processor time of this thread: how busy the machine is must not decide which faults are found.
     until = time.thread_time() + CHECK_TIMEOUT_S
     faults = _find_problem_faults(kind, plan)
     if faults:
@@ -101,6 +103,7 @@ def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
         if isinstance(value, float) and not math.isfinite(value):
             yield format_pointer(place), "This must be a finite number."
         elif isinstance(value, dict | list):
+            # Reversed, because a stack returns the last entry first: faults come in the order of the request.
             inside = value.items() if isinstance(value, dict) else enumerate(value)
             pending += [((*place, step), member) for step, member in reversed([*inside])]
 
@@ -138,6 +141,7 @@ def _find_field_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
         if way == ["kind"]:
             yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
         for other in ways[:k]:
+            # Of two fields one inside the other, the order would decide which values hold.
             if way[: len(other)] == other or other[: len(way)] == way:
                 yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
 

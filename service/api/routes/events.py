@@ -137,6 +137,7 @@ async def stream_events(
 
 async def _read_current(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
     with poller.follow(job_id, tenant) as follower:
+        # The poller reads the jobs of all listeners in one query.
         await follower.wait_for_change(STORE_TIMEOUT_S)
         if not follower.read:
             raise refuse_without_store()
@@ -152,6 +153,7 @@ async def _generate_events(
         follower.update(job)
         while not poller.closed:
             if not await follower.wait_for_change(KEEP_ALIVE_S):
+                # Proxies close connections on which nothing is sent.
                 yield format_sse_event(comment="keep-alive")
                 continue
             event = _format_event(follower, seen, shown)
@@ -182,6 +184,7 @@ def _format_event(
     )
 
 
+# The unreachable yield makes it a generator.
 async def _generate_nothing() -> AsyncIterator[bytes]:
     return
     yield b""

@@ -202,6 +202,7 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
                 await _make_content(request, bench, tenant, make_file, _build_arguments(job, n, {}), "svg")
             ).decode()
         except Refusal as refusal:
+            # A design without parts does not prevent a report.
             if refusal.status not in (409, 422):
                 raise
             found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
@@ -230,6 +231,7 @@ async def _respond_with_file(
     job = await get_solved_job(desk, tenant, job_id)
     n = await run_in_threadpool(_check_design_number, job.result, number)
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
+        # 501: another installation of the service can do it, and no change of this design helps.
         raise Refusal(
             501, "no-cad", "No CAD",
             "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
@@ -245,6 +247,7 @@ async def _respond_with_file(
     headers = {"X-Content-Type-Options": "nosniff"}
     if file == "svg":
         headers |= HEADERS["svg"]
+    # Pictures and views are shown in a page, all other files are saved.
     elif file != "json":
         headers["Content-Disposition"] = f'attachment; filename="{name}"'
     return Response(content, media_type=_MEDIA[file], headers=headers)
