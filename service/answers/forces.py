@@ -41,15 +41,15 @@ def _compute_forces(job: SolvedJob, number: str, steps: int, body: object) -> by
     if body is None:
         if problem.dynamics is None:
             raise _refuse_forces("The problem has no `dynamics`; post your own block.")
-        stated: Any = problem.dynamics
+        block: Any = problem.dynamics
     else:
         try:
-            stated = DesignForcesRequest.model_validate(body).dynamics
-            stated.fill_from_layout(problem.layout)
+            block = DesignForcesRequest.model_validate(body).dynamics
+            block.fill_from_layout(problem.layout)
         except ValidationError as error:
             raise refuse_invalid_body(error, body, DesignForcesRequest) from None
     try:
-        return to_json(compute_forces_over_motion(stated, design, problem.length_unit, steps), inf_nan_mode="null")
+        return to_json(compute_forces_over_motion(block, design, problem.length_unit, steps), inf_nan_mode="null")
     except ForcesUnknownError as error:
         if body is None or not error.path:
             raise _refuse_forces(make_sentence(str(error))) from None
@@ -63,8 +63,8 @@ def _compute_own_forces(problem: Any, design: Any, steps: int) -> JsonObject:
     motion = problem.motion.model_copy(update={"steps": steps}).model_dump(exclude_unset=True, by_alias=True)
     if "speed_rpm" not in motion:
         motion["speed"] = problem.motion.rate  # the default of the kind
-    stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
-    return parse_request({**stated, "length_unit": problem.length_unit}).build_answer()
+    body = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
+    return parse_request({**body, "length_unit": problem.length_unit}).build_answer()
 
 
 def _refuse_forces(detail: str) -> Refusal:

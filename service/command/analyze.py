@@ -27,9 +27,9 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
     service.ClientError
         If the service does not analyse it.
     """
-    stated = read_object(source)
+    content = read_object(source)
     # The motion may be left out: the service has a default.
-    request = stated if "mechanism" in stated else {"mechanism": stated}
+    request = content if "mechanism" in content else {"mechanism": content}
     if not isinstance(request["mechanism"], dict):
         raise SourceError(f"{source} contains no mechanism")
     with service.Client(url, key) as client:

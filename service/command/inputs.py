@@ -26,25 +26,26 @@ _SEPARATORS = ",;\t"
 
 def read_problem(source: str) -> tuple[JsonObject, str | None]:
     """Read the problem and its label from a problem, a request body, or a table in a ``.csv`` file."""
+    # The name of the file is the label of the job, unless the request has one.
     label = None if source == STANDARD_INPUT else Path(source).stem
     if Path(source).suffix.lower() == ".csv":
         return _parse_table(source, read_text(source)), label
-    stated = read_object(source)
-    inner = stated.get("problem")
+    content = read_object(source)
+    inner = content.get("problem")
     if isinstance(inner, dict):  # a request body
-        return inner, stated.get("label")
-    return stated, label
+        return inner, content.get("label")
+    return content, label
 
 
 def read_object(source: str) -> JsonObject:
     """Read the JSON object in a file."""
     try:
-        stated = json.loads(read_text(source))
+        content = json.loads(read_text(source))
     except ValueError as error:
         raise SourceError(f"{source} is not JSON: {error}") from None
-    if not isinstance(stated, dict):
+    if not isinstance(content, dict):
         raise SourceError(f"{source} contains no JSON object")
-    return stated
+    return content
 
 
 def read_text(source: str) -> str:
@@ -53,8 +54,8 @@ def read_text(source: str) -> str:
         # Spreadsheets put a byte order mark first, which `utf-8-sig` skips.
         return sys.stdin.read() if source == STANDARD_INPUT else Path(source).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        told = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
-        raise SourceError(f"cannot read {source} ({told})") from None
+        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise SourceError(f"cannot read {source} ({reason})") from None
 
 
 def _parse_table(source: str, text: str) -> JsonObject:

@@ -328,14 +328,14 @@ def _is_stored(connection: Connection, job_id: str) -> bool:
 def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
     most = _NO_LIMIT if max_queued is None else max_queued
-    asked = {"of": row["tenant"], "most": most}
+    limits = {"of": row["tenant"], "most": most}
     # SQLite has one writer at a time, so its inserts need no further order.
     postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(
+    if postgresql and connection.execute(COUNT_QUEUED, limits).scalar_one() > min(
         _SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS
     ):
         serialize_inserts(connection, row["tenant"])
-    return connection.execute(INSERT_JOB, {**row, **asked, "as": row["cost"]}).rowcount > 0
+    return connection.execute(INSERT_JOB, {**row, **limits, "as": row["cost"]}).rowcount > 0
 
 
 def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:

@@ -42,8 +42,8 @@ def get_dynamics(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) 
             return DynamicsBlock.model_validate(own)
         except ValidationError as error:
             raise NotSimulated(f"The design's `dynamics` is invalid: {error.errors()[0]['msg']}.") from None
-    stated = getattr(problem, "dynamics", None)
-    return None if stated is None else apply_link_shape(stated, mechanism.links)
+    dynamics = getattr(problem, "dynamics", None)
+    return None if dynamics is None else apply_link_shape(dynamics, mechanism.links)
 
 
 def plan_motion(
@@ -76,8 +76,8 @@ def plan_motion(
 
 def _get_requested_speed(problem: ProblemBase, slides: bool) -> float | None:
     """Return the speed from the problem's dynamics, else from its motion; None if missing or 0."""
-    for stated in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
-        found = getattr(stated, "speed" if slides else "speed_rpm", None)
+    for block in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
+        found = getattr(block, "speed" if slides else "speed_rpm", None)
         if found:
             return float(found)
     return None

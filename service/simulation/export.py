@@ -82,8 +82,8 @@ def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: For
         with contextlib.suppress(NotSimulated):
             machine = _build_unscaled(design, problem, title, form, query.model_copy(update={"scale": larger}))
             if _find_min_mass(machine) >= MIN_MASS:
-                told = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
-                return replace(machine, remarks=(*machine.remarks, told))
+                remark = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
+                return replace(machine, remarks=(*machine.remarks, remark))
     raise NotSimulated(
         f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {MIN_MASS:g}.",
         "" if query.scale is None else SCALE_PATH,
@@ -94,8 +94,8 @@ def open_in_pmks(design: AnyDesign, problem: ProblemBase) -> PmksModel:
     """Return the address at which PMKS+ opens a design; raises as :func:`write_simulation` does."""
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(design.mechanism.type)
-    stated = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
-    return write_pmks(_rebuild_mechanism(design), stated or DEFAULT_RPM)
+    speed_rpm = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
+    return write_pmks(_rebuild_mechanism(design), speed_rpm or DEFAULT_RPM)
 
 
 def _rebuild_mechanism(design: AnyDesign) -> Mechanism:

@@ -141,13 +141,15 @@ class _Train:
         # Speeds are normalized to the driven shaft.
         share = self.shafts[driven].speed
         rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
-        told = [
+        notes = [
             f"Gears are {self.material} discs ({DENSITIES[self.material]:g} kg/m3) of their pitch diameters.",
             *remarks,
             "There is no gravity.",
         ]
         if given:
-            told.append(f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}.")
+            notes.append(
+                f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}."
+            )
         return Multibody(
             title=title,
             bodies=bodies,
@@ -163,7 +165,7 @@ class _Train:
             motion={name: own * times for name, own in rates.items()},
             rates=rates,
             size=self._measure_size(),
-            remarks=tuple(told),
+            remarks=tuple(notes),
         )
 
     def _measure_size(self) -> float:
@@ -310,16 +312,16 @@ def build_train_series(
     for number, unit in enumerate(mechanism.units):
         prefix, share = f"unit {number + 1} ", metrics.speeds[number]
         if isinstance(unit, PlanetaryMechanism):
-            held = {} if joined is None else {unit.input: joined}
+            existing = {} if joined is None else {unit.input: joined}
             # Each unit continues on the output shaft of the previous one.
             axis = 0j if joined is None else train.shafts[joined].place / train.scale
             measured = metrics.units[number]
             assert isinstance(measured, PlanetaryMetrics)
-            bodies = _add_planetary(train, unit, measured, prefix, share, axis, held)
+            bodies = _add_planetary(train, unit, measured, prefix, share, axis, existing)
             start, joined = bodies[unit.input], bodies[unit.output]
         else:
-            start, joined, told = _add_ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
-            remarks += told
+            start, joined, added = _add_ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
+            remarks += added
         first = first or start
     return train.build_machine(title, first, query, dict.fromkeys(remarks))
 

@@ -96,8 +96,8 @@ class SliceSolver:
         outcome: Outcome = "slice"
         until = time.perf_counter() + SLICE_S
         try:
-            for stated, answer in self._attach_answers(batch, plan, todo, new):
-                new.append(self._finish_sample(batch, plan, stated, answer))
+            for sample, answer in self._attach_answers(batch, plan, todo, new):
+                new.append(self._finish_sample(batch, plan, sample, answer))
                 if time.perf_counter() >= until:
                     break
         except SolverStopped:
@@ -171,14 +171,14 @@ class SliceSolver:
             group = self._group(batch, plan, left)
             stored: dict[str, str | OwnAnswer] = {}
             if plan.reuse:
-                wanted = {stated.digest for stated in group if stated.digest is not None}
-                stored = write_when_reachable(self._store.find_answers, batch, wanted - own.keys())
-            for stated in group:
+                digests = {sample.digest for sample in group if sample.digest is not None}
+                stored = write_when_reachable(self._store.find_answers, batch, digests - own.keys())
+            for sample in group:
                 # The caller appends to `new` between two yields: the last entry is the sample yielded before.
                 if plan.reuse and new and new[-1].digest is not None:
                     own[new[-1].digest] = OwnAnswer(new[-1].number, new[-1].figures)
-                known_by = stated.digest or ""
-                yield stated, own.get(known_by) or stored.get(known_by)
+                known_by = sample.digest or ""
+                yield sample, own.get(known_by) or stored.get(known_by)
 
     def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_PreparedSample]:
         """Prepare the next samples of ``left`` and remove them from it, as many as are queried together.

@@ -273,11 +273,11 @@ class BatchStore:
     def _return_share(
         self, share_id: str, claim: str, number: int | None, retries: int, error: Callable[[str], str]
     ) -> Status | None:
-        held = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
+        claimed = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
             jobs.c.id == share_id, jobs.c.claim == claim, jobs.c.status == Status.RUNNING
         )
         with self._engine.begin() as connection:
-            row = connection.execute(held.with_for_update()).one_or_none()
+            row = connection.execute(claimed.with_for_update()).one_or_none()
             if row is None:
                 return None
             left = Share.read(row.problem)

@@ -27,11 +27,11 @@ log = structlog.get_logger(__name__)
 class StoreListener(threading.Thread):
     """Calls back with the content of each notification, and with None if it may have missed some."""
 
-    def __init__(self, url: str, channel: str, told: Changed) -> None:
+    def __init__(self, url: str, channel: str, notify: Changed) -> None:
         super().__init__(name="store-listener", daemon=True)
         self._engine = create_listener_engine(url)
         self._channel = channel
-        self._told = told
+        self._told = notify
         self._stopping = threading.Event()
 
     def stop(self) -> None:

@@ -103,7 +103,7 @@ class LocalExecutor:
 
     def list_claims(self) -> dict[str, str]:
         """Return the ids of the jobs that the lanes run, by their claims."""
-        return dict(held for lane in self._lanes if (held := lane.current_claim) is not None)
+        return dict(claim for lane in self._lanes if (claim := lane.current_claim) is not None)
 
     def drop(self, claim: str) -> None:
         """Stop the job that a lane runs under a claim that is no longer valid."""

@@ -109,20 +109,22 @@ def make_pin(
             make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR),
             make_round_part(called, f"cap of {described}, pressed or glued on", make_prisms(cap), FASTENER_COLOUR),
         ]
-    held = sizes.ring
-    groove, bottom = 0.5 * held.groove, low - held.width
+    retaining = sizes.ring
+    groove, bottom = 0.5 * retaining.groove, low - retaining.width
     stack = [
-        (shank, 0.0, bottom - held.beyond, bottom),
+        (shank, 0.0, bottom - retaining.beyond, bottom),
         (groove, 0.0, bottom, low),
         (shank, 0.0, low, top),
-        (groove, 0.0, top, top + held.width),
-        (shank, 0.0, top + held.width, top + held.width + held.beyond + stub),
+        (groove, 0.0, top, top + retaining.width),
+        (shank, 0.0, top + retaining.width, top + retaining.width + retaining.beyond + stub),
     ]
-    below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
-    above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
+    below = [(0.5 * retaining.diameter, groove, low - retaining.thickness, low)]
+    above = [(0.5 * retaining.diameter, groove, top, top + retaining.thickness)]
     what = f"retaining ring of {described}"
     sides = ("ring_below", above if upside_down else below), ("ring_above", below if upside_down else above)
-    rings = [make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, held.standard) for side, ring in sides]
+    rings = [
+        make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, retaining.standard) for side, ring in sides
+    ]
     return [make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR, name_bar(sizes.pin)), *rings]
 
 

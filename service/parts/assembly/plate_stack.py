@@ -117,9 +117,9 @@ class PlateStack:
         steel, seated = MATERIALS[self.sizes.process][1], Region(make_key_section(place, sizes.pin, key))
         for plane in keyed:
             bodies = (Prism(seated, *self.get_level(plane)),)
-            told = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
+            designation = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
             parts.append(Part(f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane), steel,
-                              FASTENER_COLOUR, told))  # fmt: skip
+                              FASTENER_COLOUR, designation))  # fmt: skip
         return parts
 
     def make_fillers(

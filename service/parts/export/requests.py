@@ -54,9 +54,9 @@ def make_file(order: JsonObject, file: File) -> bytes | FileRefusal:
         Fields of an :class:`PartsRequest` with the query of the file.
     file : {"zip", "step", "glb", "json", "svg"}
     """
-    asked = PartsRequest.model_validate(order)
+    request = PartsRequest.model_validate(order)
     try:
-        return _make_file(asked, file)
+        return _make_file(request, file)
     except NotMade as error:
         return FileRefusal(str(error), error.path)
 
@@ -89,9 +89,9 @@ def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | File
         Name of the item.
     form : {"dxf", "stl", "step", "3mf"}
     """
-    asked = PartsRequest.model_validate(order)
+    request = PartsRequest.model_validate(order)
     try:
-        listed = list_items(_get_assembly(asked))
+        listed = list_items(_get_assembly(request))
     except NotMade as error:
         return FileRefusal(str(error), error.path)
     item = next((item for item in listed if item.name == name), None)
@@ -101,7 +101,7 @@ def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | File
         )
     if form not in list_files(item.part):
         return FileRefusal(f"{name} has no {form} file.", "", known=False)
-    return write_item_file(item, form, _make_title(asked))
+    return write_item_file(item, form, _make_title(request))
 
 
 def _make_title(order: PartsRequest) -> str:
@@ -139,5 +139,5 @@ def _choose_input(assembly: Assembly, query: AssemblyQuery) -> float:
     other: InputField = "input_angle" if name == "input_place" else "input_place"
     if getattr(query, other) is not None:
         raise NotMade(f"The input of this mechanism is given by `{name}`.", f"/query/{other}")
-    stated = getattr(query, name)
-    return motion.reference if stated is None else motion.convert_input(stated, assembly.unit)
+    input_value = getattr(query, name)
+    return motion.reference if input_value is None else motion.convert_input(input_value, assembly.unit)

@@ -107,11 +107,11 @@ def _is_endless(motion: Motion) -> bool:
     """Return whether the motion continues without limit and without repetition."""
     beyond = math.degrees(motion.high) + ENDLESS_TEST_DEGREES
     try:
-        stated = motion.convert_input(beyond, 1.0)
+        converted = motion.convert_input(beyond, 1.0)
     except NotMade:
         return False
     # Endless motions accept any angle unchanged; cyclic ones reduce it.
-    return not motion.closed and math.isclose(stated, math.radians(beyond))
+    return not motion.closed and math.isclose(converted, math.radians(beyond))
 
 
 def _make_carrier_views(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[CarrierView]:

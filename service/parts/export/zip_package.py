@@ -145,8 +145,8 @@ def _write_read_me(
 def _list_instructions(assembly: Assembly, plates: dict[int, list[str]]) -> list[str]:
     """Return the assembly instructions."""
     if not assembly.parallel:
-        told = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
-        return ["Assemble each shaft, then set the shafts into the base:", *told,
+        plate_lines = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
+        return ["Assemble each shaft, then set the shafts into the base:", *plate_lines,
                 "Spacers fill the gaps on the shafts; assembly.svg shows their positions."]  # fmt: skip
     return [
         f"Assemble from below{_describe_thickness(assembly)}:",

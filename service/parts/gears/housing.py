@@ -126,8 +126,8 @@ class Housing:
 
     def _make_plate(self, name: str, level: int, posts: Iterable[complex]) -> Part:
         radius = 0.5 * self.sizes.hole
-        held = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
-        cuts: list[Outline] = [Disc(place, radius) for place in (*held, *posts)]
+        axes = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
+        cuts: list[Outline] = [Disc(place, radius) for place in (*axes, *posts)]
         # A shaft that is keyed to a plate is fixed to the housing.
         cuts += [
             make_bore(shaft.axis, self.sizes.pin, find_key(self.sizes.pin), self.sizes.clearance)

@@ -244,9 +244,9 @@ class _OrdinaryTask:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MAX_TURNS))
 
     def _list_notes(self, stand: Arrangement) -> tuple[str, ...]:
-        told = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
+        notes = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
         for number, reach in enumerate(stand.reaches):
             if reach != (0, self.highest + 1):
                 plate = "lower" if reach[0] == 0 else "upper"
-                told.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
-        return tuple(told)
+                notes.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
+        return tuple(notes)

@@ -173,8 +173,8 @@ class _LinkageFitting(Fitting):
         return Trial(None, reason)
 
     def _list_shaft_options(self) -> tuple[Shafts, ...]:
-        stated = self._query.shafts or getattr(self._block, "shafts", None)
-        return ("one_side", "both_sides") if stated is None else (stated,)
+        requested = self._query.shafts or getattr(self._block, "shafts", None)
+        return ("one_side", "both_sides") if requested is None else (requested,)
 
     def _try_shafts(self, sizes: Sizes, scale: float, shafts: Shafts) -> Trial:
         factor = self._unit * scale
