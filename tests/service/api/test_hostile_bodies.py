@@ -76,7 +76,7 @@ def test_at_most_twenty_faults_are_listed(client):
     body = raw('{"kind":"motion",' + ",".join(f'"wrong_{n}":0' for n in range(50)) + "}")
     _, problem = refused(client, body)
     assert len(problem["errors"]) == 20
-    assert "more than 20 faults" in problem["detail"]
+    assert "More than 20 fields" in problem["detail"]
 
 
 def test_what_has_to_be_a_list_is_told_so(client):
