@@ -43,7 +43,7 @@ def test_what_states_no_problem(client, name):
     if path is not None:
         assert path in paths
     for error in problem["errors"]:
-        assert error["detail"].endswith(".")
+        assert error["detail"].endswith((".", "?"))
         assert error["detail"][0].isupper()
         assert "perpetuum" not in error["detail"]
 
