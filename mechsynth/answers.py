@@ -122,9 +122,11 @@ class Design:
             raise ValueError(f"steps must be at least 1, got {steps}")
         from synthesis.analyses import get_family  # imported on demand: the analysis core takes time to load
 
+        # The analysis validates the mechanism as a client would send it.
         mechanism = self.mechanism.model_dump(mode="json")
         return Cycle.from_lists(get_family(mechanism).request.analyze_cycle(mechanism, steps))
 
+    # Notebooks call this method and the next one.
     def _repr_svg_(self) -> str:
         return self.draw()
 

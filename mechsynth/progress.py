@@ -31,6 +31,7 @@ def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
         yield ignore_progress
     else:
         try:
+            # tqdm is optional; its module `auto` shows a widget in notebooks.
             bar = importlib.import_module("tqdm.auto").tqdm(total=100, bar_format=_FORMAT, leave=False)
         except ImportError:
             yield _Lines().report
@@ -41,6 +42,7 @@ def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
 
 def _move_bar(bar: Any, fraction: float, message: str) -> None:
     bar.set_description(message, refresh=False)
+    # Progress of a solver may step back, bars may not.
     bar.update(max(0.0, round(100.0 * fraction) - bar.n))
 
 

@@ -39,15 +39,17 @@ def solve(
     Cancelled
         If ``cancel`` was set.
     """
+    # On demand: the solvers take seconds to load.
     from synthesis.dispatch import solve as solved
 
-    asked = check_problem(problem)
-    with open_progress(progress) as told:
-        return Result(solved(asked, _stop_on_cancel(cancel, told)), asked, label)
+    checked = check_problem(problem)
+    with open_progress(progress) as report:
+        return Result(solved(checked, _stop_on_cancel(cancel, report)), checked, label)
 
 
 def _stop_on_cancel(cancel: threading.Event | None, report_progress: ProgressCallback) -> ProgressCallback:
     def report(fraction: float, message: str) -> None:
+        # A report of progress is the only place at which a solver can be stopped.
         if cancel is not None and cancel.is_set():
             raise Cancelled("the solution was cancelled")
         report_progress(fraction, message)
@@ -105,10 +107,10 @@ class Client:
         ClientError
             ``Unreachable``, ``Refused``, or ``JobFailed`` if the job ended without a result.
         """
-        with open_progress(progress) as told:
+        with open_progress(progress) as report:
             try:
                 job = self.service.solve(
-                    build_statement(problem), label=label, progress=_convert_progress(told), cancel=cancel
+                    build_statement(problem), label=label, progress=_convert_progress(report), cancel=cancel
                 )
             except service.ClientError as error:
                 raise _classify_error(error, cancel) from error
@@ -145,9 +147,11 @@ class AsyncClient:
 
     async def solve(self, problem: Problem, *, label: str | None = None, progress: Progress = False) -> Result:
         """Solve a problem and wait for the answer; raises as :meth:`Client.solve`."""
-        with open_progress(progress) as told:
+        with open_progress(progress) as report:
             try:
-                job = await self.service.solve(build_statement(problem), label=label, progress=_convert_progress(told))
+                job = await self.service.solve(
+                    build_statement(problem), label=label, progress=_convert_progress(report)
+                )
             except service.ClientError as error:
                 raise _classify_error(error, None) from error
         return _build_result(job)
@@ -175,10 +179,14 @@ def _classify_error(error: service.ClientError, cancel: threading.Event | None) 
     if isinstance(error, service.JobFailed) and error.job.status == "cancelled":
         return Cancelled(str(error))
     if isinstance(error, service.Refused):
+        # Deleting a job that has just ended removes it; the client then finds no job.
         if cancel is not None and cancel.is_set() and error.status == 404:
             return Cancelled("the job had already ended when it was cancelled, and was removed")
+        # Faults elsewhere, such as in the label, are no faults of the problem.
         if error.status == 422 and error.errors and all(_is_in_problem(path) for path in error.errors):
-            return InvalidProblem({path.removeprefix(_PROBLEM_POINTER): told for path, told in error.errors.items()})
+            return InvalidProblem(
+                {path.removeprefix(_PROBLEM_POINTER): detail for path, detail in error.errors.items()}
+            )
     return error
 
 

@@ -28,6 +28,7 @@ class InvalidProblem(ValueError):
 def build_statement(problem: Problem) -> dict[str, Any]:
     """Return a problem as a JSON object."""
     if isinstance(problem, ProblemBase):
+        # `kind` is a default of its class and would be left out with the other unset fields.
         return {**json.loads(problem.model_dump_json(exclude_unset=True)), "kind": problem.kind}
     return dict(problem)
 
@@ -45,6 +46,7 @@ def check_problem(problem: Problem) -> ProblemBase:
     if kind not in KINDS:
         raise InvalidProblem({"/kind": f"Kind must be given and be one of: {', '.join(KINDS)}."})
     read, faults = check_fields(kind, statement)
+    # Contradictions can be looked for only among valid fields.
     faults = faults or check_consistency(read)
     if faults:
         raise InvalidProblem(_merge_by_path(faults))
@@ -54,5 +56,6 @@ def check_problem(problem: Problem) -> ProblemBase:
 def _merge_by_path(faults: Faults) -> dict[str, str]:
     errors: dict[str, str] = {}
     for path, detail in faults:
+        # One field may contradict several others.
         errors[path] = f"{errors[path]} {detail}" if path in errors else detail
     return errors

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
-from service.error_messages import MAX_FAULTS, explain_fault, locate_fault
+from service.error_messages import MAX_FAULTS, Models, describe_faults
 from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
@@ -44,7 +44,7 @@ class Refusal(Exception):
         self.headers = headers
         self.defect = defect
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Pickle the fields: the default would call the constructor with the detail alone."""
         headers = None if self.headers is None else dict(self.headers)
         fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
@@ -52,7 +52,13 @@ class Refusal(Exception):
 
 
 def _restore_refusal(
-    status: int, type_: str, title: str, detail: str, errors: FieldFaults, headers: Any, defect: str | None
+    status: int,
+    type_: str,
+    title: str,
+    detail: str,
+    errors: FieldFaults,
+    headers: dict[str, str] | None,
+    defect: str | None,
 ) -> Refusal:
     name = type_.removeprefix("/problems/")
     return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
@@ -65,30 +71,29 @@ def refuse_not_found(detail: str) -> Refusal:
 
 def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
     """Build the refusal of an invalid problem; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-problem", "Invalid problem", count_faults(len(errors)), errors=errors)
+    return Refusal(422, "invalid-problem", "Invalid problem", count_invalid_fields(errors), errors=errors)
 
 
 def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
     """Build the refusal of an invalid mechanism; ``errors`` are pairs of path and detail."""
-    detail = count_faults(len(errors))
+    detail = count_invalid_fields(errors)
     return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
 
 
 def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     """Build the refusal of another invalid part of a request; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-request", "Invalid request", count_faults(len(errors)), errors=errors)
+    return Refusal(422, "invalid-request", "Invalid request", count_invalid_fields(errors), errors=errors)
 
 
-def refuse_invalid_body(error: ValidationError, body: Any) -> Refusal:
-    """Build the refusal of a body that is validated by this code and not by the framework."""
+def refuse_invalid_body(error: ValidationError, body: object, model: type[BaseModel]) -> Refusal:
+    """Build the refusal of a body that is validated by this code, against ``model``, and not by the framework."""
     faults = error.errors(include_url=False, include_context=False)
-    return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body)
+    return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body, {"body": model})
 
 
-def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
+def refuse_faults(faults: Sequence[Mapping[str, Any]], body: object, models: Models) -> Refusal:
     """Build the refusal for pydantic's faults: of a problem, a mechanism or the request, depending on their places."""
-    # A union tries several models, which may report the same fault.
-    placed = list(dict.fromkeys((locate_fault(fault, body), explain_fault(fault)) for fault in faults))
+    placed = describe_faults(faults, body, models)
     if all(path.startswith("/problem/") for path, _ in placed):
         return refuse_invalid_problem(placed)
     if all(path.startswith("/mechanism/") for path, _ in placed):
@@ -96,17 +101,19 @@ def refuse_faults(faults: Sequence[Mapping[str, Any]], body: Any) -> Refusal:
     return refuse_invalid_request(placed)
 
 
-def count_faults(faults: int) -> str:
-    """Return a sentence with the number of faults of a request."""
-    if faults > MAX_FAULTS:
-        return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
-    return f"The request has {format_count(faults, 'fault')}."
+def count_invalid_fields(errors: FieldFaults) -> str:
+    """Return a sentence with the number of invalid fields of a request."""
+    # Several faults may be reported for one field.
+    count = len({path for path, _ in errors})
+    if count > MAX_FAULTS:
+        return f"More than {MAX_FAULTS} fields of the request are invalid; the first {MAX_FAULTS} are listed."
+    return f"{format_count(count, 'field')} of the request {'is' if count == 1 else 'are'} invalid."
 
 
 __all__ = [
     "FieldFaults",
     "Refusal",
-    "count_faults",
+    "count_invalid_fields",
     "refuse_faults",
     "refuse_invalid_body",
     "refuse_invalid_mechanism",

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.error_messages import explain_fault, locate_fault, make_sentence
+from service.error_messages import describe_faults, make_sentence
 from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
@@ -24,18 +24,20 @@ def dump_problem(problem: ProblemBase) -> str:
     return problem.model_dump_json(exclude_unset=True)
 
 
-def load_stored_problem(kind: str, stored: str) -> Any:
+def load_stored_problem(kind: str, stored: str) -> ProblemBase:
     """The problem that :func:`dump_problem` has written; raises pydantic's ValidationError where it is none."""
-    return KINDS[kind].problem.model_validate_json(stored)
+    problem: ProblemBase = KINDS[kind].problem.model_validate_json(stored)
+    return problem
 
 
-def check_fields(kind: str, statement: Any) -> tuple[Any, Faults]:
+def check_fields(kind: str, statement: object) -> tuple[Any, Faults]:
     """Validate a problem field by field; return it, or None, and the faults of its fields."""
+    model = KINDS[kind].problem
     try:
-        return KINDS[kind].problem.model_validate(statement), []
+        return model.model_validate(statement), []
     except ValidationError as error:
         faults = ({**fault, "loc": ("body", *fault["loc"])} for fault in error.errors())
-        return None, list(dict.fromkeys((locate_fault(fault, statement), explain_fault(fault)) for fault in faults))
+        return None, describe_faults(faults, statement, {"body": model})
 
 
 def check_consistency(problem: ProblemBase) -> Faults:

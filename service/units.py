@@ -25,7 +25,7 @@ def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
     displacement, rate = ("°", "rad") if problem.is_oscillating else (length, length)
     output, way = (length, length) if problem.slides else ("°", "rad")
     force = "lbf" if inches else "N"
-    stated = {
+    symbols = {
         Dimension.FORCE: force,
         Dimension.STIFFNESS: f"{force}/{length}",
         Dimension.MASS: "lbf·s²/in" if inches else "kg",
@@ -33,9 +33,9 @@ def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
         **_SI,
     }
     if problem.force_units == "si":
-        stated |= {Dimension.FORCE: "N", Dimension.STIFFNESS: "N/m", Dimension.MASS: "kg", Dimension.TORQUE: "N·m"}
+        symbols |= {Dimension.FORCE: "N", Dimension.STIFFNESS: "N/m", Dimension.MASS: "kg", Dimension.TORQUE: "N·m"}
     elif problem.force_units == "consistent":
-        stated = dict.fromkeys(stated, "")  # the units of such a set are the client's
+        symbols = dict.fromkeys(symbols, "")  # the units of such a set are the client's
     return {
         Dimension.LENGTH: length,
         Dimension.AREA: f"{length}²",
@@ -55,5 +55,5 @@ def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
         Dimension.RADIAN_FREQUENCY: "rad/s",
         Dimension.PERCENT: "%",
         Dimension.GRADE: "mm/s",
-        **stated,
+        **symbols,
     }

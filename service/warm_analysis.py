@@ -6,9 +6,8 @@ compiled ahead in other processes (:mod:`service.server.precompile`).
 
 from __future__ import annotations
 
-from typing import Any
-
 from service.loading import IMPORTS
+from synthesis.model.json_object import JsonObject
 
 
 def warm_up() -> None:
@@ -30,10 +29,10 @@ def warm_up() -> None:
 
 
 # Optional blocks whose kernels the examples do not call: a request with one of them must not wait for the compiler.
-_LAYOUT: dict[str, Any] = {"layout": {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}}
-_TARGETS: dict[str, Any] = {"targets": [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]}
-_MANUFACTURE: dict[str, Any] = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}
-_TOPICS: dict[str, Any] = {"include": ["cognates", "centrodes", "curvature", "coupler_curve", "branches"]}
+_LAYOUT: JsonObject = {"layout": {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}}
+_TARGETS: JsonObject = {"targets": [{"x": 1.0, "y": 2.0}, {"x": 2.0, "y": 3.0}]}
+_MANUFACTURE: JsonObject = {**_TARGETS, "manufacture": {"tolerances": {"length": 0.1}}}
+_TOPICS: JsonObject = {"include": ["cognates", "centrodes", "curvature", "coupler_curve", "branches"]}
 
 _SLIDER_CRANK = {
     "type": "slider_crank",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import ValidationError
 from pydantic_core import to_json
 
@@ -12,7 +10,7 @@ from service.error_messages import make_sentence
 from service.refusals import refuse_invalid_body, refuse_invalid_mechanism, refuse_invalid_request
 
 
-def analyse(body: Any) -> bytes:
+def analyse(body: object) -> bytes:
     """Analyse the mechanism in a request body.
 
     Raises
@@ -21,15 +19,16 @@ def analyse(body: Any) -> bytes:
         422, with the place of each fault.
     """
     from kinematics import errors as kinematics
-    from synthesis.analyses import parse_request
+    from synthesis.analyses import get_family
     from synthesis.analyses.budget import BudgetError
     from synthesis.mechanisms import MechanismError
 
     with refuse_numerical_errors():
+        model = get_family(body.get("mechanism") if isinstance(body, dict) else None).request
         try:
-            request = parse_request(body)
+            request = model.model_validate(body)
         except ValidationError as error:
-            raise refuse_invalid_body(error, body) from None
+            raise refuse_invalid_body(error, body, model) from None
         contradictions = request.find_errors()
         if contradictions:
             raise refuse_invalid_request([(path, make_sentence(detail)) for path, detail in contradictions])

@@ -9,12 +9,14 @@ import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Mapping
-from typing import Any
+from typing import TypeVar
 
 from service.answers import process
 from service.jobs.processes.parent_death import export_parent_pid
-from service.jobs.processes.request_pool import Busy, Limits, PoolMetrics, RequestPool
+from service.jobs.processes.request_pool import Busy, Limits, PoolMetrics, ProcessStart, RequestPool
 from service.observability.logs import Format
+
+T = TypeVar("T")
 
 TEMPLATE_MODULE = "service.answers.template"
 """Module imported by the process from which the others are forked."""
@@ -54,16 +56,15 @@ class AnswerDesk:
     """
 
     def __init__(self, log_level: str, log_format: Format, metrics: PoolMetrics | None = None) -> None:
-        settings = log_level, log_format, MEMORY_MB
         self._loaded, self._stopping = threading.Event(), threading.Event()
         self._asked = 0
+        start = ProcessStart(process.prepare, (log_level, log_format, MEMORY_MB), forks=self._loaded.is_set)
         self._analyses = RequestPool(
-            "analyses", process.prepare, settings, Limits(WALL_S, CPU_S, SHORT_S),
-            hands=HANDS, max_long=MAX_LONG, wait_s=WAIT_S, forks=self._loaded.is_set, metrics=metrics,
+            "analyses", start, Limits(WALL_S, CPU_S, SHORT_S),
+            hands=HANDS, max_long=MAX_LONG, wait_s=WAIT_S, metrics=metrics,
         )  # fmt: skip
         self._drawings = RequestPool(
-            "drawings", process.prepare, settings, Limits(DRAWING_WALL_S, DRAWING_CPU_S),
-            hands=MAX_LONG, forks=self._loaded.is_set, metrics=metrics,
+            "drawings", start, Limits(DRAWING_WALL_S, DRAWING_CPU_S), hands=MAX_LONG, metrics=metrics,
         )  # fmt: skip
 
     def start(self, after: Callable[[], bool]) -> None:
@@ -91,8 +92,8 @@ class AnswerDesk:
         return {pool.name: pool.count_calls() for pool in (self._analyses, self._drawings)}
 
     async def analyse(
-        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any
-    ) -> Any:
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object
+    ) -> T:
         """Call a function that returns an analysis.
 
         Raises
@@ -103,7 +104,7 @@ class AnswerDesk:
         await self._wait_until_loaded()
         return await self._analyses.call(gone, tenant, work, *args)
 
-    async def draw(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+    async def draw(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object) -> T:
         """Call a function that draws, reports or exports; errors as for :meth:`analyse`."""
         return await self._drawings.call(gone, tenant, work, *args)
 

@@ -8,6 +8,8 @@ from typing import Any
 
 from service.refusals import refuse_not_found
 from service.requests import load_stored_problem
+from synthesis.model.answer import Result
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
@@ -25,13 +27,14 @@ class SolvedJob:
     problem: str
     result: str
 
-    def load_problem(self) -> Any:
+    def load_problem(self) -> ProblemBase:
         """Parse the problem."""
         return load_stored_problem(self.kind, self.problem)
 
-    def load_result(self) -> Any:
+    def load_result(self) -> Result[Any]:
         """Parse the result, with its designs."""
-        return KINDS[self.kind].result.model_validate_json(self.result)
+        result: Result[Any] = KINDS[self.kind].result.model_validate_json(self.result)
+        return result
 
 
 def parse_design_index(number: str, designs: int) -> int:

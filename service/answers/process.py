@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import os
 from collections.abc import Callable
-from typing import Any
 
 from service.jobs.processes.limits import limit_memory, restrict_process
 from service.observability.logs import Format
@@ -28,7 +27,7 @@ GZIP_MARK = b"\x1f\x8b"
 """First bytes of compressed answers; no JSON begins with them."""
 
 
-def compute_packed(work: Callable[..., bytes], *args: Any) -> bytes:
+def compute_packed(work: Callable[..., bytes], *args: object) -> bytes:
     """Call a function, and compress a large answer, which would block the event loop of the server."""
     answer = work(*args)
     return gzip.compress(answer, PACKING_LEVEL) if len(answer) >= PACKED_BYTES else answer

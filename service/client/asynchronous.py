@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import httpx
 
@@ -39,7 +39,7 @@ class AsyncClient:
         """Close the connections."""
         await self._http.aclose()
 
-    async def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
+    async def submit(self, problem: Mapping[str, object], *, label: str | None = None, wait_s: int = 0) -> Job:
         """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(await self._send_request(exchange.build_submission(problem, label, wait_s)))
 
@@ -59,6 +59,7 @@ class AsyncClient:
             try:
                 async with self._http.stream("GET", following.path, **following.build_request()) as answer:
                     if not following.check_opened(answer) and not following.ended:
+                        # The body of a stream is not read by itself, and it has the reason.
                         await answer.aread()
                         raise exchange.build_refusal(answer)
                     async for line in answer.aiter_lines():
@@ -68,6 +69,7 @@ class AsyncClient:
                             return
             except (Refused, httpx.TransportError) as error:
                 fault = error
+            # A stream may also end without an error, for example when the service stops.
             if not following.ended:
                 await asyncio.sleep(following.handle_break(fault))
 
@@ -80,7 +82,7 @@ class AsyncClient:
 
     async def solve(
         self,
-        problem: Mapping[str, Any],
+        problem: Mapping[str, object],
         *,
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,
@@ -97,6 +99,7 @@ class AsyncClient:
             job = await self.wait(job.id, progress)
         except ClientError:
             raise
+        # A cancelled task, or an error of the progress callback: nothing waits for the job any more.
         except BaseException:
             with suppress(ClientError, RuntimeError):  # RuntimeError if the connections are already closed
                 await self.delete(job.id)
@@ -108,6 +111,7 @@ class AsyncClient:
         try:
             return (await self._send_request(exchange.build_file_request(job_id, design, form))).content
         except Refused as refusal:
+            # The caller knows the job, so that only its file can be missing.
             if refusal.status == 404:
                 return None
             raise

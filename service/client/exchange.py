@@ -22,6 +22,7 @@ MAX_PAUSE_S = 30.0
 STREAM_TIMEOUT = httpx.Timeout(60.0)
 """Timeout of a stream, on which the service sends at least a comment every 15 seconds."""
 
+# 429 is the rate limit, 503 a full queue or a busy service; a proxy answers 502 or 504 while the service restarts.
 _TEMPORARY_STATUSES = (429, 502, 503, 504)
 
 
@@ -33,14 +34,15 @@ class Request(NamedTuple):
     more: Mapping[str, Any] = {}
 
 
-def build_pool_settings(url: str, key: str | None, timeout_s: float) -> dict[str, Any]:
+def build_pool_settings(url: str, key: str | None, timeout_s: float) -> Json:
     """Return the arguments of httpx for a pool of connections to one service."""
     headers = {} if key is None else {"Authorization": f"Bearer {key}"}
     return {"base_url": url, "headers": headers, "timeout": timeout_s}
 
 
-def build_submission(problem: Mapping[str, Any], label: str | None, wait_s: int) -> Request:
+def build_submission(problem: Mapping[str, object], label: str | None, wait_s: int) -> Request:
     """Build the request that submits a problem and waits at most ``wait_s`` (up to 30) seconds for its end."""
+    # The key makes the request repeatable: a second attempt gets the job that the first has created.
     body = {"problem": dict(problem), **({} if label is None else {"label": label})}
     headers = {"Idempotency-Key": uuid.uuid4().hex, **({"Prefer": f"wait={wait_s}"} if wait_s > 0 else {})}
     return Request("POST", "/v1/jobs", {"json": body, "headers": headers})
@@ -99,19 +101,22 @@ class EventReader:
         self._name, self._data = "message", ""
         self._id: str | None = None
 
-    def build_request(self) -> dict[str, Any]:
+    def build_request(self) -> Json:
         """Return the arguments of the request for the stream, with the event after which it resumes."""
+        # Drop a partly received event: the service sends it again.
         self._name, self._data, self._id = "message", "", None
         return {"headers": {} if self._last is None else {"Last-Event-ID": self._last}, "timeout": STREAM_TIMEOUT}
 
     def check_opened(self, answer: httpx.Response) -> bool:
         """Return whether the answer is a stream; after the last event there is none (204)."""
+        # By the standard of server-sent events, 204 asks the client not to reconnect.
         self.ended = answer.status_code == 204
         return answer.status_code == 200
 
     def parse_line(self, line: str) -> JobSummary | Progress | None:
         """Process a line of the stream and return the event that it completes; ignore comments and unknown events."""
         field, _, value = line.partition(":")
+        # One blank after the colon belongs to the format, further ones to the value.
         value = value.removeprefix(" ")
         match field:
             case "event":
@@ -120,6 +125,7 @@ class EventReader:
                 self._data += value
             case "id":
                 self._id = value
+            # A blank line ends an event; without data it is none.
             case "" if not line and self._data:
                 name, data, event_id = self._name, json.loads(self._data), self._id
                 self._name, self._data, self._id = "message", "", None
@@ -132,6 +138,7 @@ class EventReader:
             raise Refused(404, {"detail": "The job was removed."})
         if name == "progress":
             return Progress(**data)
+        # A later version of the service may have further events.
         if name != "state":
             return None
         job = build_summary(data)
@@ -161,6 +168,7 @@ def build_refusal(answer: httpx.Response) -> Refused:
     try:
         problem = answer.json()
     except ValueError:
+        # A proxy answers with a page, not with problem details.
         problem = None
     return Refused(answer.status_code, problem if isinstance(problem, dict) else {"detail": answer.reason_phrase})
 
@@ -171,5 +179,6 @@ def _build_unreachable(url: object, error: Exception) -> Unreachable:
 
 def _compute_pause_s(attempt: int, retry_after: str | None) -> float:
     """Return the pause before the next attempt, seconds: as the service requests, or doubling with each attempt."""
+    # The service sends seconds; a date, the other form of the header, can only come from a proxy.
     asked_for = float(retry_after) if retry_after is not None and retry_after.isdecimal() else 0.1 * 2**attempt
     return min(asked_for, MAX_PAUSE_S)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import httpx
 
@@ -47,7 +47,7 @@ class Client:
         """Close the connections."""
         self._http.close()
 
-    def submit(self, problem: Mapping[str, Any], *, label: str | None = None, wait_s: int = 0) -> Job:
+    def submit(self, problem: Mapping[str, object], *, label: str | None = None, wait_s: int = 0) -> Job:
         """Submit a problem; wait at most ``wait_s`` seconds (up to 30) for the end of the job."""
         return exchange.parse_job(self._send_request(exchange.build_submission(problem, label, wait_s)))
 
@@ -80,6 +80,7 @@ class Client:
             try:
                 with self._http.stream("GET", following.path, **following.build_request()) as answer:
                     if not following.check_opened(answer) and not following.ended:
+                        # The body of a stream is not read by itself, and it has the reason.
                         answer.read()
                         raise exchange.build_refusal(answer)
                     for line in answer.iter_lines():
@@ -90,6 +91,7 @@ class Client:
                             return
             except (Refused, httpx.TransportError) as error:
                 fault = error
+            # A stream may also end without an error, for example when the service stops.
             if not following.ended:
                 time.sleep(following.handle_break(fault))
 
@@ -102,7 +104,7 @@ class Client:
 
     def solve(
         self,
-        problem: Mapping[str, Any],
+        problem: Mapping[str, object],
         *,
         label: str | None = None,
         progress: Callable[[Progress], None] | None = None,
@@ -117,6 +119,7 @@ class Client:
         JobFailed
             If the job ends without a result. An answer without designs is a result.
         """
+        # Brief problems end within this second, so that one request answers them.
         job = self.submit(problem, label=label, wait_s=1)
         if not job.finished:
             with self._cancel_with(job.id, cancel):
@@ -137,12 +140,14 @@ class Client:
                     self.delete(job_id)
             raise
         finally:
+            # The thread must not cancel a job that has ended meanwhile: deleting it would remove its answer.
             over.set()
             if cancel is not None:
                 watching.join()
 
     def _cancel_when(self, job_id: str, cancel: threading.Event, over: threading.Event) -> None:
         while not over.is_set():
+            # Polls, because a thread cannot wait for two events at once.
             if cancel.wait(_CANCEL_CHECK_PERIOD_S):
                 with suppress(ClientError):
                     self.delete(job_id)
@@ -153,6 +158,7 @@ class Client:
         try:
             return self._send_request(exchange.build_file_request(job_id, design, form)).content
         except Refused as refusal:
+            # The caller knows the job, so that only its file can be missing.
             if refusal.status == 404:
                 return None
             raise
@@ -162,11 +168,11 @@ class Client:
         request = Request("GET", f"/v1/jobs/{job_id}/designs/{design}/motion", {"params": {"steps": steps}})
         return _parse_object(self._send_request(request))
 
-    def analyse(self, mechanism: Mapping[str, Any], motion: Mapping[str, Any]) -> Json:
+    def analyse(self, mechanism: Mapping[str, object], motion: Mapping[str, object]) -> Json:
         """Analyse a given mechanism."""
         return self.analysis({"mechanism": dict(mechanism), "motion": dict(motion)})
 
-    def analysis(self, request: Mapping[str, Any]) -> Json:
+    def analysis(self, request: Mapping[str, object]) -> Json:
         """Send a complete analysis request, which may have further blocks, and return its answer."""
         return _parse_object(self._send_request(Request("POST", "/v1/analyses", {"json": dict(request)})))
 

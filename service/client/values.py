@@ -8,7 +8,7 @@ ClientError
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
@@ -27,10 +27,11 @@ class Unreachable(ClientError):
 class Refused(ClientError):
     """The service has answered with an error (problem details, RFC 9457)."""
 
-    def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
+    def __init__(self, status: int, problem: Json) -> None:
         self.status = status
         self.type = str(problem.get("type", "about:blank"))
         self.detail = str(problem.get("detail", ""))
+        # The keys are unique paths: of several faults at one place the last one is kept.
         self.errors = {str(fault["path"]): str(fault["detail"]) for fault in problem.get("errors") or ()}
         lines = [f"{status}: {self.detail}", *(f"  {path or '/'}: {detail}" for path, detail in self.errors.items())]
         super().__init__("\n".join(lines))
@@ -86,12 +87,12 @@ class Job(JobSummary):
         return self
 
 
-def build_job(shown: Mapping[str, Any]) -> Job:
+def build_job(shown: Json) -> Job:
     """Build a job from an answer."""
     return Job(**_extract_values(shown, _JOB_FIELDS))
 
 
-def build_summary(listed: Mapping[str, Any]) -> JobSummary:
+def build_summary(listed: Json) -> JobSummary:
     """Build a job summary from a list or an event."""
     return JobSummary(**_extract_values(listed, _SUMMARY_FIELDS))
 
@@ -100,6 +101,6 @@ _JOB_FIELDS = [field.name for field in fields(Job)]
 _SUMMARY_FIELDS = [field.name for field in fields(JobSummary)]
 
 
-def _extract_values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
+def _extract_values(listed: Json, names: Sequence[str]) -> Json:
     # Additional fields of a newer service are ignored.
     return {**{name: listed[name] for name in names}, "progress": Progress(**listed["progress"])}

@@ -8,10 +8,10 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from service import client as service
 from service.command.inputs import SourceError, read_object
+from synthesis.model.json_object import JsonObject
 
 
 def analyze(source: str, url: str, key: str | None, output: Path | None) -> None:
@@ -27,8 +27,9 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
     service.ClientError
         If the service does not analyse it.
     """
-    stated = read_object(source)
-    request = stated if "mechanism" in stated else {"mechanism": stated}
+    content = read_object(source)
+    # The motion may be left out: the service has a default.
+    request = content if "mechanism" in content else {"mechanism": content}
     if not isinstance(request["mechanism"], dict):
         raise SourceError(f"{source} contains no mechanism")
     with service.Client(url, key) as client:
@@ -39,10 +40,11 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         sys.stdout.write(text)
     else:
         output.parent.mkdir(parents=True, exist_ok=True)
+        # Written as it is: CSV already has its line ends.
         output.write_text(text, encoding="utf-8", newline="")
 
 
-def _format_table(source: str, answer: dict[str, Any]) -> str:
+def _format_table(source: str, answer: JsonObject) -> str:
     count = len(answer.get("input_angle", ()))
     columns = {name: values for name, values in _iterate_lists("", answer) if len(values) == count > 0}
     if not columns:
@@ -54,7 +56,7 @@ def _format_table(source: str, answer: dict[str, Any]) -> str:
     return text.getvalue()
 
 
-def _iterate_lists(place: str, value: Any) -> Iterator[tuple[str, list[Any]]]:
+def _iterate_lists(place: str, value: object) -> Iterator[tuple[str, list[object]]]:
     """Yield every list of plain values in an answer with its place."""
     if isinstance(value, dict):
         for name, inner in value.items():

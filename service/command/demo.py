@@ -10,9 +10,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 from service.client import Client, ClientError, Job
+from synthesis.model.json_object import JsonObject
 
 START_TIMEOUT_S = 120.0
 """Time limit for the start, seconds; the very first start compiles the numerical kernels."""
@@ -84,7 +84,7 @@ def report(job: Job) -> str:
     return "\n".join(lines)
 
 
-def _check(check: dict[str, Any]) -> str:
+def _check(check: JsonObject) -> str:
     measured = "".join(f"   {key} {check[key]:.3g}" for key in ("value", "limit") if key in check)
     return f"{'passed' if check['passed'] else 'FAILED'}  {check['name']:<22}{measured}".rstrip()
 
@@ -105,6 +105,7 @@ def _start_service() -> Iterator[str]:
             "MECHSYNTH_RESERVE": "0",
             "MECHSYNTH_COMPILE_AHEAD": "false",
         }
+        # The demonstration must never write into the operator's store.
         environment.pop("MECHSYNTH_DATABASE_URL", None)
         announced = Path(folder) / "announced"
         with announced.open("wb") as stdout:
@@ -117,6 +118,7 @@ def _start_service() -> Iterator[str]:
             server.terminate()
             try:
                 server.wait(STOP_TIMEOUT_S)
+            # The service must not outlive the demonstration.
             except subprocess.TimeoutExpired:
                 server.kill()
                 server.wait()
@@ -125,6 +127,7 @@ def _start_service() -> Iterator[str]:
 def _wait_for_url(server: subprocess.Popen[bytes], announced: Path) -> str:
     deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
+        # The port is chosen by the system, so only the announcement has it.
         words = announced.read_text().split()
         if words and words[-1].startswith("http"):
             return words[-1]

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 from pydantic import ValidationError
 
 from service.command.inputs import SourceError, read_object
 from service.render import Form, NoSuchExport, NotBuilt, export_design, list_forms, make_heading
 from service.requests import load_stored_problem
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.json_object import JsonObject
+from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
 
@@ -30,6 +33,7 @@ def draw(source: str, number: int, output: Path) -> None:
     problem, designs = _read_answer(source, job)
     if not 1 <= number <= len(designs):
         raise SourceError(f"design {number} does not exist; {source} has designs 1 to {len(designs)}")
+    # The command line counts from 1, the API from 0.
     design = designs[number - 1]
     try:
         content = export_design(design, problem, make_heading(problem, job.get("label"), number - 1), form)
@@ -42,7 +46,7 @@ def draw(source: str, number: int, output: Path) -> None:
     output.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-def _read_answer(source: str, job: dict[str, Any]) -> tuple[Any, list[Any]]:
+def _read_answer(source: str, job: JsonObject) -> tuple[ProblemBase, list[AnyDesign]]:
     problem, result = job.get("problem"), job.get("result")
     if not isinstance(problem, dict) or not isinstance(result, dict) or problem.get("kind") not in KINDS:
         raise SourceError(f"{source} contains no answer; mechsynth solve --json writes one")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 from rich.console import Console
@@ -19,6 +18,7 @@ from service import client as service
 from service.command.inputs import STANDARD_INPUT, SourceError, read_problem
 from service.units import list_symbols
 from synthesis.model.counting import format_count
+from synthesis.model.json_object import JsonObject
 from synthesis.registry import parse_problem
 
 _MAX_COLUMNS = 7
@@ -76,7 +76,8 @@ def _create_console() -> Console:
     return Console(soft_wrap=True) if sys.stdout.isatty() else Console(soft_wrap=True, width=_FILE_WIDTH)
 
 
-def _solve_with_progress(client: service.Client, problem: Mapping[str, Any], label: str | None) -> service.Job:
+def _solve_with_progress(client: service.Client, problem: JsonObject, label: str | None) -> service.Job:
+    # Brief problems end within this second and need no bar.
     job = client.submit(problem, label=label, wait_s=1)
     if not job.finished:
         with _cancel_on_interrupt(client, job.id), _create_bar() as bar:
@@ -92,12 +93,14 @@ def _cancel_on_interrupt(client: service.Client, job_id: str) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
+        # Left alone, the job might keep a worker busy for minutes.
         client.delete(job_id)
         raise SolveFailure("interrupted; the job is cancelled") from None
 
 
 def _create_bar() -> Progress:
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
+    # On standard error, so that the output can be redirected to a file.
     return Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True)
 
 
@@ -106,6 +109,7 @@ def report(job: service.Job, console: Console) -> None:
     result = job.result or {}
     search, designs = result["search"], result["designs"]
     known = "complete: no other designs exist" if search["complete"] else "not complete: other designs may exist"
+    # Texts of the service may contain square brackets, which rich would take as markup.
     console.print(result["summary"], markup=False, highlight=False)
     console.print(f"Search: {search['method']}, {known}.", markup=False, highlight=False)
     if not designs:
@@ -137,7 +141,7 @@ def _format_amount(value: float | None, unit: str) -> str:
     return f"{_format_value(value)}{unit}" if unit in ("", "°") else f"{_format_value(value)} {unit}"
 
 
-def _find_units(problem: Mapping[str, Any]) -> dict[str, str]:
+def _find_units(problem: JsonObject) -> dict[str, str]:
     """Return unit symbols by dimension; none for a problem of a newer service, which this client cannot parse."""
     try:
         return {str(dimension): symbol for dimension, symbol in list_symbols(parse_problem(dict(problem))).items()}
@@ -145,7 +149,7 @@ def _find_units(problem: Mapping[str, Any]) -> dict[str, str]:
         return {}
 
 
-def _compare_designs(designs: Sequence[Mapping[str, Any]]) -> Table:
+def _compare_designs(designs: Sequence[JsonObject]) -> Table:
     plain = [name for name, value in designs[0]["metrics"].items() if isinstance(value, (int, float, str))]
     # Metrics that are equal for all designs do not help to choose one.
     telling = [name for name in plain if len({str(design["metrics"].get(name)) for design in designs}) > 1]
@@ -161,7 +165,7 @@ def _compare_designs(designs: Sequence[Mapping[str, Any]]) -> Table:
     return table
 
 
-def _flatten_dimensions(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
+def _flatten_dimensions(value: object, name: str = "") -> Iterator[tuple[str, str]]:
     """Yield every dimension with the path of its name; long lists and derived data are left to the files."""
     if isinstance(value, dict):
         for key, inner in value.items():
@@ -177,7 +181,7 @@ def _flatten_dimensions(value: Any, name: str = "") -> Iterator[tuple[str, str]]
         yield name, _format_value(value)
 
 
-def _format_value(value: Any) -> str:
+def _format_value(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
@@ -189,6 +193,7 @@ def _write_drawings(client: service.Client, job: service.Job, folder: Path, form
         for form in forms:
             content = client.file(job.id, n, form)
             if content is not None:
+                # Only now, so that an answer without files leaves no empty folder.
                 folder.mkdir(parents=True, exist_ok=True)
                 (folder / f"design-{n + 1}.{form}").write_bytes(content)
                 yield f"design-{n + 1}.{form}"

@@ -12,7 +12,7 @@ from typing import Any
 
 from service.imports import reader
 from service.imports.limits import MEMORY_MB, READ_TIMEOUT_S
-from service.jobs.processes.request_pool import GivenUp, Limits, PoolMetrics, RequestPool
+from service.jobs.processes.request_pool import GivenUp, Limits, PoolMetrics, ProcessStart, RequestPool
 from service.observability.logs import Format
 from service.outlines.faults import UnsuitableDrawing
 
@@ -28,7 +28,7 @@ class ImportDesk:
     ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
         self.pool = RequestPool(
-            "files", reader.prepare, settings, Limits(READ_TIMEOUT_S), hands=READER_COUNT, metrics=metrics
+            "files", ProcessStart(reader.prepare, settings), Limits(READ_TIMEOUT_S), hands=READER_COUNT, metrics=metrics
         )
 
     async def read(

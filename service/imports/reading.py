@@ -88,17 +88,17 @@ def read_curves(
     DrawingError
         One of its subclasses, if there are no curves.
     """
-    asked = PointRequest(tolerance, max_points)
+    requested = PointRequest(tolerance, max_points)
     # Overflows are checked in the resulting coordinates.
     with np.errstate(all="ignore"):
         if content.startswith(PNG_SIGNATURE):
-            return _read_picture(content, length_unit, pixel_size, asked)
+            return _read_picture(content, length_unit, pixel_size, requested)
         drawing = read_drawing(content)
         if drawing is not None:
-            return _read_drawing(drawing, length_unit, asked)
+            return _read_drawing(drawing, length_unit, requested)
         if not tables:
             raise ForeignFormat("The body is neither SVG, DXF text nor PNG; a table is sent as text/csv.")
-        return _read_table(content, length_unit, asked)
+        return _read_table(content, length_unit, requested)
 
 
 def _read_drawing(drawing: Drawing, length_unit: DrawingUnit, request: PointRequest) -> Imports:
@@ -132,12 +132,12 @@ def _connect_curves(curves: Sequence[Curve], reach: float) -> tuple[list[FoundCu
 
 def _read_picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, request: PointRequest) -> Imports:
     picture = read_picture(content)
-    stated = picture.millimetres
+    pixel_millimetres = picture.millimetres
     if pixel_size is not None:
         across = up = pixel_size
         unit: DrawingUnit | None = length_unit
-    elif stated is not None:
-        across, up = (side / MILLIMETRES_PER_UNIT[length_unit] for side in stated)
+    elif pixel_millimetres is not None:
+        across, up = (side / MILLIMETRES_PER_UNIT[length_unit] for side in pixel_millimetres)
         unit = length_unit
     else:
         across, up, unit = 1.0, 1.0, None

@@ -21,12 +21,12 @@ class Fault:
 
     def as_json(self, job_id: str) -> str:
         """Return the object as JSON for the row of the job."""
-        told = {**asdict(self), "instance": f"/v1/jobs/{job_id}"}
+        details = {**asdict(self), "instance": f"/v1/jobs/{job_id}"}
         if self.errors is None:
-            del told["errors"]
+            del details["errors"]
         else:
-            told["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
-        return json.dumps(told)
+            details["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
+        return json.dumps(details)
 
 
 INTERNAL_ERROR = Fault(

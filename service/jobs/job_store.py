@@ -13,13 +13,14 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Engine, delete, func, select, text, update
+from sqlalchemy import Connection, Delete, Engine, Update, delete, func, select, text, update
 from ulid import ULID
 
 from service.jobs.batches.reading import load_sample, load_samples
 from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
 from service.jobs.store.schema import (
     QUEUED_CONDITION,
+    AnyRow,
     Claim,
     JobRow,
     JobSummary,
@@ -61,7 +62,8 @@ jobs that arrive at the same time may share a turn."""
 _MAX_CONCURRENT_INSERTS = 500
 """More than the number of concurrent inserts of all servers: this far below its limit, a queue needs no exact count."""
 
-_UNLIMITED = 1 << 30
+_NO_LIMIT = 1 << 30
+"""Limit of a queue without one; no queue gets as long."""
 
 _MAX_MESSAGE_LENGTH = 200  # the width of its column
 
@@ -281,7 +283,7 @@ class JobStore:
 
     def requeue_as_long(self, job_id: str, claim: str) -> bool:
         """Requeue a running job as a long one because it exceeds the time of a short job."""
-        values: dict[str, Any] = {**REQUEUED_VALUES, "cost": Cost.LONG, "turn": build_long_turn()}
+        values = {**REQUEUED_VALUES, "cost": Cost.LONG, "turn": build_long_turn()}
         return self._execute_change(build_move("requeue", job_id, **values).where(jobs.c.claim == claim))
 
     def requeue_unfinished(self) -> int:
@@ -313,9 +315,9 @@ class JobStore:
             status = connection.execute(change.where(jobs.c.claim == claim)).scalar_one_or_none()
         return None if status is None else Status(status)
 
-    def _execute_change(self, change: Any, values: Mapping[str, Any] | None = None) -> bool:
+    def _execute_change(self, change: Delete | Update, values: Mapping[str, object] | None = None) -> bool:
         with self._engine.begin() as connection:
-            rows: int = connection.execute(change, values).rowcount
+            rows = connection.execute(change, values).rowcount
         return rows > 0
 
 
@@ -325,15 +327,15 @@ def _is_stored(connection: Connection, job_id: str) -> bool:
 
 def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
-    most = _UNLIMITED if max_queued is None else max_queued
-    asked = {"of": row["tenant"], "most": most}
+    most = _NO_LIMIT if max_queued is None else max_queued
+    limits = {"of": row["tenant"], "most": most}
     # SQLite has one writer at a time, so its inserts need no further order.
     postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(
+    if postgresql and connection.execute(COUNT_QUEUED, limits).scalar_one() > min(
         _SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS
     ):
         serialize_inserts(connection, row["tenant"])
-    return connection.execute(INSERT_JOB, {**row, **asked, "as": row["cost"]}).rowcount > 0
+    return connection.execute(INSERT_JOB, {**row, **limits, "as": row["cost"]}).rowcount > 0
 
 
 def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
@@ -343,5 +345,5 @@ def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str])
     return connection.execute(SELECT_NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()
 
 
-def _claim(row: Any) -> Claim:
+def _claim(row: AnyRow) -> Claim:
     return Claim(row.id, row.tenant, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem, row.batch)

@@ -6,12 +6,13 @@ import io
 import logging
 import re
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from ezdxf import path, recover, units
 from ezdxf.audit import AuditError, Auditor
 from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.dxfgfx import DXFGraphic
+from ezdxf.entities.insert import Insert
 from ezdxf.entities.spline import Spline
 from ezdxf.enums import InsertUnits
 from ezdxf.lldxf.const import DXFError
@@ -74,7 +75,7 @@ class DxfReader:
             return
         source = Source(type_, str(handle) if handle else above.id, above.name, str(layer or "0"))
         try:
-            if type_ == "INSERT":
+            if isinstance(entity, Insert):
                 self.insert(entity, replace(source, name=str(_get_attribute(entity, "name") or "")), depth)
             elif isinstance(entity, Spline):
                 self.add(Curve(source, _read_spline(entity), bool(entity.closed)))
@@ -90,7 +91,7 @@ class DxfReader:
             # ezdxf raises any of these for an entity that lacks attributes of its type.
             self.left_out.append((source, "it lacks what an entity of its type has"))
 
-    def insert(self, entity: Any, source: Source, depth: int) -> None:
+    def insert(self, entity: Insert, source: Source, depth: int) -> None:
         """Read the entities of a block at every place where it is inserted."""
         if depth >= MAX_DEPTH:
             raise UnsuitableDrawing(f"The drawing nests blocks more than {MAX_DEPTH} deep.")
@@ -141,7 +142,7 @@ def read_curves(content: bytes) -> Drawing:
     return Drawing("dxf", reader.found, reader.left_out, _get_millimetres_per_unit(unit))
 
 
-def _get_attribute(entity: DXFEntity, name: str) -> Any:
+def _get_attribute(entity: DXFEntity, name: str) -> object:
     """Return an attribute of an entity, or None if the entity lacks it or its type has no such attribute."""
     return entity.dxf.get(name) if entity.dxf.is_supported(name) else None
 
@@ -162,8 +163,12 @@ def _get_millimetres_per_unit(unit: int) -> float | None:
         return None
 
 
-def _read_curve(entity: Any, source: Source) -> Curve:
-    if entity.dxftype() == "CIRCLE" and abs(entity.dxf.extrusion.normalize().z) > 1.0 - 1e-9:
+def _read_curve(entity: DXFEntity, source: Source) -> Curve:
+    if (
+        isinstance(entity, DXFGraphic)
+        and entity.dxftype() == "CIRCLE"
+        and abs(entity.dxf.extrusion.normalize().z) > 1.0 - 1e-9
+    ):
         centre = entity.ocs().to_wcs(entity.dxf.center)
         # Circles seen from above or below stay exact circles.
         if not 0.0 < entity.dxf.radius <= MAX_COORDINATE:
@@ -190,12 +195,12 @@ def _read_curve(entity: Any, source: Source) -> Curve:
     return Curve(source, _check_flat(np.concatenate(pieces), heights), drawn.is_closed)
 
 
-def _count_requested_segments(entity: Any) -> int:
+def _count_requested_segments(entity: DXFEntity) -> int:
     """Return the segment count to request from ezdxf, which uses a third of it for a bulge."""
     return 3 * SEGMENTS_PER_TURN if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") else SEGMENTS_PER_TURN
 
 
-def _read_spline(entity: Any) -> Complex:
+def _read_spline(entity: Spline) -> Complex:
     # Control points, if present, make solving the linear system unnecessary.
     if entity.fit_point_count() > MAX_FIT_POINTS and not entity.control_point_count():
         raise ValueError(f"it passes through more than {MAX_FIT_POINTS} points")

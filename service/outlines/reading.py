@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import shapely
@@ -31,6 +30,7 @@ from service.outlines.limits import (
     MAX_OUTLINES,
     MAX_POINTS,
 )
+from synthesis.model.json_object import JsonObject
 
 AREA_TOLERANCE = 1e-9
 """Polygons with less than this share of the square of their extent have no area; same value as in problem statements.
@@ -125,7 +125,7 @@ def _count_vertices(members: Sequence[Curve], tolerance: float) -> int:
 
 def _make_outline(members: Sequence[Curve], tolerance: float) -> Outline:
     """Build the outline of closed curves; raise ValueError with the obstacle if they form none."""
-    named: dict[str, Any] = {**describe_source(members[0].source), "joined": len(members)}
+    named: JsonObject = {**describe_source(members[0].source), "joined": len(members)}
     circle = members[0].circle or _fit_circle(np.concatenate([one.pieces for one in members]), tolerance)
     if circle is not None:
         if not circle.radius > 0.0:

@@ -6,15 +6,17 @@ A drawing of some hundred bytes can insert a block in a block in a block, each o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+
+from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.insert import Insert
 
 from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS
 
-Shown = Callable[[Any], bool]
+Shown = Callable[[DXFEntity], bool]
 
 
-def require_countable(entities: Iterable[Any], shown: Shown) -> None:
+def require_countable(entities: Iterable[DXFEntity], shown: Shown) -> None:
     """Refuse entities that are more than :data:`~service.outlines.limits.MAX_ELEMENTS` with those of their blocks.
 
     Parameters
@@ -35,7 +37,7 @@ def require_countable(entities: Iterable[Any], shown: Shown) -> None:
         )
 
 
-def grid_of(insert: Any) -> tuple[int, int]:
+def grid_of(insert: Insert) -> tuple[int, int]:
     """Rows and columns in which an insert repeats its block."""
     rows, columns = (max(int(insert.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
     return rows, columns
@@ -49,18 +51,18 @@ class _Counter:
         self._counts: dict[str, int] = {}
         self._open: set[str] = set()
 
-    def count(self, entities: Iterable[Any], depth: int) -> int:
+    def count(self, entities: Iterable[DXFEntity], depth: int) -> int:
         """All entities, those of blocks as often as they are inserted."""
         total = 0
         for entity in entities:
             total += 1
-            if entity.dxftype() == "INSERT" and self._shown(entity):
+            if isinstance(entity, Insert) and self._shown(entity):
                 rows, columns = grid_of(entity)
                 # Empty blocks count as one element per copy, because each copy takes time.
                 total += rows * columns * max(self._count_block(entity, depth), 1)
         return total
 
-    def _count_block(self, insert: Any, depth: int) -> int:
+    def _count_block(self, insert: Insert, depth: int) -> int:
         block = insert.block()
         if block is None:
             return 0

@@ -10,7 +10,6 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from service.parts.assembly.colours import LINK_COLOURS
 from service.parts.assembly.keys import find_key, make_bore
@@ -36,6 +35,8 @@ from service.parts.gears.sizing import GearSizing
 from service.parts.gears.wheels import check_assembly
 from service.parts.geometry.regions import Disc, Loop, Region, measure_area
 from service.parts.geometry.solids import Prism
+from synthesis.kinds.flywheel.design import FlywheelDesign
+from synthesis.kinds.flywheel.problem import FlywheelProblem
 
 MAX_BORE_SHARE = 0.2
 """Thickest default shaft, as a share of the wheel's radius."""
@@ -52,7 +53,7 @@ MIN_WINDOW_WIDTH = 0.5
 ON_SHAFT = Carrier("flywheel_shaft", None)
 
 
-def make_flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_flywheel_parts(design: FlywheelDesign, problem: FlywheelProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a flywheel.
 
     Parameters

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from service.parts.assembly.sizes import NotMade, PartsQuery
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 if TYPE_CHECKING:
     from service.parts.assembly.model import Assembly
@@ -139,7 +141,7 @@ UNAVAILABLE_TYPES = {
 """Types of mechanism without parts, with the reason and an alternative."""
 
 
-def make_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> Assembly:
     """Make the parts of a design.
 
     Parameters

@@ -7,6 +7,8 @@ from typing import Any, Literal, get_args
 
 from service.loading import IMPORTS
 from service.render.page.svg import clean_text
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 __all__ = ["Form", "NoSuchExport", "NotBuilt", "export_design", "list_forms", "make_heading"]
 
@@ -172,7 +174,7 @@ _MAKER_LOADERS: dict[Form, Callable[[], dict[str, Maker]]] = {
 """Loaders of the makers of each format, by type of mechanism or kind of problem."""
 
 
-def make_heading(problem: Any, label: str | None, number: int) -> str:
+def make_heading(problem: ProblemBase, label: str | None, number: int) -> str:
     """Return the heading of a design's drawings: the label of its job or the name of its kind, and its number.
 
     Parameters
@@ -190,7 +192,7 @@ def list_forms(mechanism: str) -> list[Form]:
     return list(FORMS_BY_TYPE.get(mechanism, get_args(Form)))
 
 
-def export_design(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
+def export_design(design: AnyDesign, problem: ProblemBase, title: str, form: Form) -> str | bytes:
     """Write a design as a file: text, or bytes for an animation.
 
     Parameters

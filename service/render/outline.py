@@ -13,7 +13,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
 
 from pydantic import BaseModel
 
@@ -72,7 +71,7 @@ def format_name(name: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def format_value(value: Any) -> str:
+def format_value(value: object) -> str:
     """Format a value for reading: numbers to six digits, null coordinates as "open", points in parentheses."""
     if value is None:
         return "–"
@@ -178,7 +177,7 @@ def _extract_meaning(description: str) -> str:
     return f"{kept.rstrip(';:.,')}." if kept else ""
 
 
-def _is_numeric(value: Any) -> bool:
+def _is_numeric(value: object) -> bool:
     if isinstance(value, list | tuple):
         return any(_is_numeric(entry) for entry in value)
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -27,8 +27,8 @@ from synthesis.model.answer import Check, Result, Search
 from synthesis.model.dimension import Dimension, collect_dimensions
 from synthesis.model.problem import ProblemBase
 
-_HERE = files("service").joinpath("render")
-_STYLE = _HERE.joinpath("report.css").read_text(encoding="utf-8")
+_FOLDER = files("service").joinpath("render")
+_STYLE = _FOLDER.joinpath("report.css").read_text(encoding="utf-8")
 _HASH = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
 
 _OWN_POLICY = f"default-src 'none'; style-src 'sha256-{_HASH}'; base-uri 'none'; form-action 'none'"
@@ -41,7 +41,7 @@ MAX_RANKING_QUANTITIES = 4
 """Maximum number of quantities in a row of the table of all designs, limited by the page width."""
 
 _ENVIRONMENT = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-_PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encoding="utf-8"))
+_PAGE = _ENVIRONMENT.from_string(_FOLDER.joinpath("report.html").read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ TOO_SLOW = Fault(
     f"The request was not complete within {REQUEST_TIMEOUT_S:g} seconds.",
 )  # fmt: skip
 NOT_HTTP = Fault(400, "/problems/malformed-request", "Malformed request", "The data received is not HTTP.")
-HOST_UNCLEAR = Fault(
+AMBIGUOUS_HOST = Fault(
     400, "/problems/malformed-request", "Malformed request", "A request must have exactly one `Host` header."
 )
 HEAD_TOO_LARGE = Fault(
@@ -151,7 +151,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         self._add_to_head(len(name) + len(value))
         self._hosts += name.lower() == b"host"
         if self._hosts > 1:  # a proxy in front may have used the other one (RFC 9112, 3.2)
-            self._fault = HOST_UNCLEAR
+            self._fault = AMBIGUOUS_HOST
             raise Unacceptable
         super().on_header(name, value)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
@@ -12,7 +12,9 @@ from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import Mechanism
 from service.simulation.query import NotSimulated, SimulationQuery, check_nonzero, refuse_unused
 from synthesis.analyses.linkages.cycle import find_cycle
+from synthesis.model.design_interface import AnyDesign
 from synthesis.model.dynamics.request import DynamicsBlock, LoadedLinkage
+from synthesis.model.problem import ProblemBase
 from synthesis.results.forces import apply_link_shape
 
 STEP_COUNT = 360
@@ -29,7 +31,7 @@ class SimulatedMotion(NamedTuple):
     speed: float
 
 
-def get_dynamics(problem: Any, design: Any, mechanism: Mechanism) -> LoadedLinkage | None:
+def get_dynamics(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) -> LoadedLinkage | None:
     """Return the weights and loads of the links from the design's or else the problem's `dynamics`; None without
     either.
     """
@@ -40,11 +42,13 @@ def get_dynamics(problem: Any, design: Any, mechanism: Mechanism) -> LoadedLinka
             return DynamicsBlock.model_validate(own)
         except ValidationError as error:
             raise NotSimulated(f"The design's `dynamics` is invalid: {error.errors()[0]['msg']}.") from None
-    stated = getattr(problem, "dynamics", None)
-    return None if stated is None else apply_link_shape(stated, mechanism.links)
+    dynamics = getattr(problem, "dynamics", None)
+    return None if dynamics is None else apply_link_shape(dynamics, mechanism.links)
 
 
-def plan_motion(problem: Any, design: Any, mechanism: Mechanism, query: SimulationQuery) -> SimulatedMotion:
+def plan_motion(
+    problem: ProblemBase, design: AnyDesign, mechanism: Mechanism, query: SimulationQuery
+) -> SimulatedMotion:
     """Return the motion of a design and its speed.
 
     Raises
@@ -70,16 +74,16 @@ def plan_motion(problem: Any, design: Any, mechanism: Mechanism, query: Simulati
     return SimulatedMotion(inputs, rate)
 
 
-def _get_requested_speed(problem: Any, slides: bool) -> float | None:
+def _get_requested_speed(problem: ProblemBase, slides: bool) -> float | None:
     """Return the speed from the problem's dynamics, else from its motion; None if missing or 0."""
-    for stated in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
-        found = getattr(stated, "speed" if slides else "speed_rpm", None)
+    for block in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
+        found = getattr(block, "speed" if slides else "speed_rpm", None)
         if found:
             return float(found)
     return None
 
 
-def _find_ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float]:
+def _find_ends(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) -> tuple[float, float]:
     slides, metrics = mechanism.has_slide_input, design.metrics
     if getattr(metrics, "full_rotation", False) and not slides:
         start = float(mechanism.reference_input)

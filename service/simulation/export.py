@@ -6,7 +6,6 @@ import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,9 @@ from service.simulation.trains import TRAIN_BUILDERS
 from service.simulation.urdf import write_urdf
 from service.simulation.weights import SCALE_PATH, compute_weights
 from synthesis.mechanisms import MechanismError as StatedMechanismError
+from synthesis.model.design_interface import AnyDesign
 from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.problem import ProblemBase
 from synthesis.verification.reconstruction import rebuild_mechanism
 
 MIN_MASS = 1e-14
@@ -41,7 +42,7 @@ WRITERS: dict[Form, Callable[[Multibody], str]] = {
 }
 
 
-def write_simulation(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> str:
+def write_simulation(design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery) -> str:
     """Write a design as a simulation.
 
     Parameters
@@ -64,7 +65,7 @@ def write_simulation(design: Any, problem: Any, title: str, form: Form, query: S
     return WRITERS[form](build_machine(design, problem, title, form, query))
 
 
-def build_machine(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery) -> Multibody:
     """Build the machine that is simulated; raises as :func:`write_simulation` does."""
     machine = _build_unscaled(design, problem, title, form, query)
     # The other formats have no such limit.
@@ -81,23 +82,23 @@ def build_machine(design: Any, problem: Any, title: str, form: Form, query: Simu
         with contextlib.suppress(NotSimulated):
             machine = _build_unscaled(design, problem, title, form, query.model_copy(update={"scale": larger}))
             if _find_min_mass(machine) >= MIN_MASS:
-                told = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
-                return replace(machine, remarks=(*machine.remarks, told))
+                remark = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
+                return replace(machine, remarks=(*machine.remarks, remark))
     raise NotSimulated(
         f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {MIN_MASS:g}.",
         "" if query.scale is None else SCALE_PATH,
     )
 
 
-def open_in_pmks(design: Any, problem: Any) -> PmksModel:
+def open_in_pmks(design: AnyDesign, problem: ProblemBase) -> PmksModel:
     """Return the address at which PMKS+ opens a design; raises as :func:`write_simulation` does."""
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(design.mechanism.type)
-    stated = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
-    return write_pmks(_rebuild_mechanism(design), stated or DEFAULT_RPM)
+    speed_rpm = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
+    return write_pmks(_rebuild_mechanism(design), speed_rpm or DEFAULT_RPM)
 
 
-def _rebuild_mechanism(design: Any) -> Mechanism:
+def _rebuild_mechanism(design: AnyDesign) -> Mechanism:
     mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
     if mechanism is None:
         raise NotSimulated("The dimensions of this design do not assemble to a mechanism.")
@@ -117,7 +118,9 @@ def _find_min_mass(machine: Multibody) -> float:
     return min(min(body.mass, body.inertia) for body in machine.bodies)
 
 
-def _build_unscaled(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+def _build_unscaled(
+    design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery
+) -> Multibody:
     kind = design.mechanism.type
     if kind in TRAIN_BUILDERS:
         return TRAIN_BUILDERS[kind](design, problem, title, query)
@@ -129,7 +132,9 @@ def _build_unscaled(design: Any, problem: Any, title: str, form: Form, query: Si
         raise NotSimulated(f"This design cannot be driven: {error}.") from None
 
 
-def _build_linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+def _build_linkage(
+    design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery
+) -> Multibody:
     refuse_unused(query, "a linkage", "gear")
     mechanism = _rebuild_mechanism(design)
     if form == "mo" and mechanism.redundant:

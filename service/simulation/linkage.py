@@ -113,8 +113,8 @@ class _Tree:
             tuple(self._make_body(self._nodes[name], weights.width) for name in self._order), size
         )
         if given:
-            told = ", ".join(given)
-            remarks = (*remarks, f"Bodies without mass or inertia, given a millionth of the heaviest one's: {told}.")
+            listed = ", ".join(given)
+            remarks = (*remarks, f"Bodies without mass or inertia, given a millionth of the heaviest one's: {listed}.")
         led = self._find_input_body()
         coordinates = {name: self._compute_coordinate(self._nodes[name]) for name in self._order}
         led_speed = float(coordinates[led][1][0])

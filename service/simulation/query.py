@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -90,8 +90,7 @@ def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
         A field is given.
     """
     for field in fields:
-        value: Any = getattr(query, field)
-        if value is not None:
+        if getattr(query, field) is not None:
             raise NotSimulated(f"This has no meaning for {of}; leave it out.", f"/query/{field}")
 
 

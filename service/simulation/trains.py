@@ -24,11 +24,19 @@ from service.simulation.course import DEFAULT_RPM, STEP_COUNT
 from service.simulation.model import GROUND, Body, Multibody, Relation, Vector, ensure_masses
 from service.simulation.naming import Names
 from service.simulation.query import TRAIN_TYPES, NotSimulated, SimulationQuery, check_nonzero, refuse_unused
-from synthesis.kinds.gear_train.design import GearTrainMechanism
+from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanism
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import build_train
-from synthesis.kinds.planetary_train.design import PlanetaryMechanism
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
+from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMechanism, PlanetaryMetrics
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
 from synthesis.model.dynamics.bodies import DENSITIES
-from synthesis.model.dynamics.request import METRES_PER_UNIT
+from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit
 
 FACE_WIDTH_MODULES = 10.0
 """Default face width of gears, modules."""
@@ -61,7 +69,7 @@ class _Shaft:
 class _Train:
     """Shafts and meshes of a train by name."""
 
-    def __init__(self, unit: Any, query: SimulationQuery) -> None:
+    def __init__(self, unit: LengthUnit, query: SimulationQuery) -> None:
         self.scale = METRES_PER_UNIT[unit] * query.built
         self.shafts: dict[str, _Shaft] = {}
         self.relations: list[tuple[tuple[str, float], ...]] = []
@@ -133,13 +141,15 @@ class _Train:
         # Speeds are normalized to the driven shaft.
         share = self.shafts[driven].speed
         rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
-        told = [
+        notes = [
             f"Gears are {self.material} discs ({DENSITIES[self.material]:g} kg/m3) of their pitch diameters.",
             *remarks,
             "There is no gravity.",
         ]
         if given:
-            told.append(f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}.")
+            notes.append(
+                f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}."
+            )
         return Multibody(
             title=title,
             bodies=bodies,
@@ -155,7 +165,7 @@ class _Train:
             motion={name: own * times for name, own in rates.items()},
             rates=rates,
             size=self._measure_size(),
-            remarks=tuple(told),
+            remarks=tuple(notes),
         )
 
     def _measure_size(self) -> float:
@@ -180,7 +190,9 @@ class _Train:
         )
 
 
-def build_gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_gear_train(
+    design: GearTrainDesign, problem: GearTrainProblem, title: str, query: SimulationQuery
+) -> Multibody:
     """Build the machine of an ordinary train."""
     refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
@@ -216,7 +228,9 @@ def _add_ordinary(
     return first, at, remarks
 
 
-def build_planetary_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_planetary_train(
+    design: PlanetaryDesign, problem: PlanetaryProblem, title: str, query: SimulationQuery
+) -> Multibody:
     """Build the machine of a planetary train."""
     refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
@@ -226,7 +240,7 @@ def build_planetary_train(design: Any, problem: Any, title: str, query: Simulati
 
 
 def _add_planetary(
-    train: _Train, mechanism: PlanetaryMechanism, metrics: Any, prefix: str, share: float, axis: complex,
+    train: _Train, mechanism: PlanetaryMechanism, metrics: PlanetaryMetrics, prefix: str, share: float, axis: complex,
     joined: Mapping[str, str],
 ) -> dict[str, str]:  # fmt: skip
     """Add the bodies of a planetary train about an axis; return their names by member. ``joined`` maps members to
@@ -285,7 +299,9 @@ def _add_planet_mesh(
     train.add_mesh(*terms)
 
 
-def build_train_series(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_train_series(
+    design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str, query: SimulationQuery
+) -> Multibody:
     """Build the machine of trains in series: the output of each is the input of the next, about one axis."""
     refuse_unused(query, "a gear train", "gear")
     train = _Train(problem.length_unit, query)
@@ -296,19 +312,21 @@ def build_train_series(design: Any, problem: Any, title: str, query: SimulationQ
     for number, unit in enumerate(mechanism.units):
         prefix, share = f"unit {number + 1} ", metrics.speeds[number]
         if isinstance(unit, PlanetaryMechanism):
-            held = {} if joined is None else {unit.input: joined}
+            existing = {} if joined is None else {unit.input: joined}
             # Each unit continues on the output shaft of the previous one.
             axis = 0j if joined is None else train.shafts[joined].place / train.scale
-            bodies = _add_planetary(train, unit, metrics.units[number], prefix, share, axis, held)
+            measured = metrics.units[number]
+            assert isinstance(measured, PlanetaryMetrics)
+            bodies = _add_planetary(train, unit, measured, prefix, share, axis, existing)
             start, joined = bodies[unit.input], bodies[unit.output]
         else:
-            start, joined, told = _add_ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
-            remarks += told
+            start, joined, added = _add_ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
+            remarks += added
         first = first or start
     return train.build_machine(title, first, query, dict.fromkeys(remarks))
 
 
-def build_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_gearbox(design: GearboxDesign, problem: GearboxProblem, title: str, query: SimulationQuery) -> Multibody:
     """Build the machine of a machine-tool gearbox with the gear pairs of one speed engaged."""
     engaged_speed = _get_engaged_number(query, len(design.metrics.speeds))
     found = design.metrics.speeds[engaged_speed - 1]
@@ -333,7 +351,9 @@ def build_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery)
     )
 
 
-def build_layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+def build_layshaft_gearbox(
+    design: LayshaftDesign, problem: LayshaftProblem, title: str, query: SimulationQuery
+) -> Multibody:
     """Build the machine of a layshaft gearbox with one gear engaged; reverse comes after the last gear."""
     mechanism = design.mechanism
     count = len(mechanism.gears) + (mechanism.reverse is not None)
@@ -347,7 +367,7 @@ def build_layshaft_gearbox(design: Any, problem: Any, title: str, query: Simulat
     if pair is None:
         assert back is not None
         output = on_layshaft * back.layshaft / back.mainshaft
-    elif pair.layshaft is None:
+    elif pair.layshaft is None or pair.mainshaft is None:
         output = 1.0
     else:
         output = -on_layshaft * pair.layshaft / pair.mainshaft
@@ -364,7 +384,7 @@ def build_layshaft_gearbox(design: Any, problem: Any, title: str, query: Simulat
     if pair is None:
         assert back is not None
         train.add_mesh(("main shaft", float(back.mainshaft)), ("idler", float(back.idler)))
-    elif pair.layshaft is None:
+    elif pair.layshaft is None or pair.mainshaft is None:
         train.add_mesh(("main shaft", 1.0), ("input", -1.0))
     else:
         train.add_mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))

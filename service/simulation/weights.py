@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body
@@ -13,7 +13,7 @@ from service.simulation.query import NotSimulated, SimulationQuery
 from synthesis.mechanisms.link_bodies import BlockError
 from synthesis.mechanisms.machine import build_machine, find_weight_errors
 from synthesis.model.dynamics.bodies import DENSITIES, Material
-from synthesis.model.dynamics.request import METRES_PER_UNIT, LoadedLinkage
+from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit, LoadedLinkage
 
 MAX_PIN_PER_SIZE, MAX_PIN_PER_LINK = 0.04, 0.35
 """Maximum pin diameter as a share of the mechanism's size, and of its shortest link; as in service.parts."""
@@ -40,7 +40,7 @@ class Weights(NamedTuple):
 
 
 def compute_weights(
-    mechanism: Mechanism, block: LoadedLinkage | None, layout: Any, unit: Any, query: SimulationQuery
+    mechanism: Mechanism, block: LoadedLinkage | None, layout: object, unit: LengthUnit, query: SimulationQuery
 ) -> Weights:
     """Return the masses of a linkage.
 
@@ -111,7 +111,7 @@ def compute_weights(
     return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, width, tuple(remarks))
 
 
-def _get_sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuery) -> tuple[float, float]:
+def _get_sizes(mechanism: Mechanism, layout: object, unit: float, query: SimulationQuery) -> tuple[float, float]:
     """Return width and thickness of the links, metres."""
     width = query.width or getattr(layout, "link_width", None)
     thickness = query.thickness or getattr(layout, "thickness", None)

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from typing import Protocol
+
+from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import MechanismError as ImpossibleMechanism
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms import GivenMechanism, MechanismError, is_known_by_dimensions
+from synthesis.model.json_object import JsonObject
 
 _GIVEN_ADAPTER: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
-def rebuild_mechanism(mechanism: BaseModel, *, from_skeleton: bool = False) -> Mechanism | None:
+class Dimensions(Protocol):
+    """A model of the dimensions of a mechanism."""
+
+    def model_dump(self) -> JsonObject:
+        """Return the fields by name."""
+
+
+def rebuild_mechanism(mechanism: Dimensions, *, from_skeleton: bool = False) -> Mechanism | None:
     """Rebuild the mechanism of an answer in its reference configuration.
 
     If the dimensions of a type are complete, its skeleton is ignored. Every other type is rebuilt from its skeleton,
@@ -19,8 +29,8 @@ def rebuild_mechanism(mechanism: BaseModel, *, from_skeleton: bool = False) -> M
 
     Parameters
     ----------
-    mechanism : BaseModel
-        Any answer's mechanism.
+    mechanism : Dimensions
+        Mechanism of any answer.
     from_skeleton : bool
         Use the skeleton in any case, after a comparison with the dimensions: it has joints that the dimensions lack,
         such as points of a body on a rocker.

@@ -29,6 +29,7 @@ class GuardedRoute(APIRoute):
         handle = self.build_inner_handler()
 
         async def handle_after_admission(request: Request) -> Response:
+            # Before the body is read, so that strangers cannot make the service parse one.
             request.state.tenant = await _check_admission(request)
             return await handle(request)
 
@@ -45,6 +46,7 @@ async def _check_admission(request: Request) -> str:
     try:
         tenant, allowance = await gate.admit(_read_key(request))
     except NoKey as refusal:
+        # The challenge names an error only if a key was sent (RFC 6750, section 3).
         raise Refusal(
             401, "unauthorized", "Unauthorized",
             "The API key is not valid." if refusal.given else "Send an API key: `Authorization: Bearer mechsynth_...`.",
@@ -86,6 +88,7 @@ def _is_for_this_machine(request: Request) -> bool:
         name = urlsplit(f"//{given}").hostname or ""
         if not name.strip("."):
             return False
+        # A final dot marks a name as complete and does not change it.
         *registered, last = name.rstrip(".").split(".")
         return not registered or last in UNREGISTRABLE_DOMAINS or _is_address(name)
     except ValueError:
@@ -102,6 +105,7 @@ def _is_address(name: str) -> bool:
 
 def _read_key(request: Request) -> str | None:
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
+    # Names of schemes are case-insensitive (RFC 9110, section 11.1).
     return key.strip() if scheme.lower() == "bearer" else None
 
 

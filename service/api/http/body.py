@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from typing import Any
 
 from fastapi import Request, Response
 from pydantic_core import from_json
@@ -74,7 +73,7 @@ def refuse_media_type(detail: str, *accepted: str) -> Refusal:
 class JsonRequest(BoundedRequest):
     """A request whose JSON body is checked and parsed by this module."""
 
-    _checked: Any
+    _checked: object
 
     async def read(self, limit: int) -> None:
         """Read and parse the body of at most ``limit`` bytes.
@@ -89,7 +88,7 @@ class JsonRequest(BoundedRequest):
         self._body = await self.read_limited(limit)
         self._checked = _parse_body(self._body)
 
-    async def json(self) -> Any:
+    async def json(self) -> object:
         """Return the parsed body; :meth:`read` must be called first."""
         return self._checked
 
@@ -119,7 +118,7 @@ def _refuse_large_body(limit: int) -> Refusal:
     )  # fmt: skip
 
 
-def _parse_body(body: bytes) -> Any:
+def _parse_body(body: bytes) -> object:
     if _has_more_values_than(body, MAX_VALUES):
         raise _refuse_many_values(body)
     # This parser limits depth and digits itself. It passes NaN and 1e999 on to the validation, which names the field.
@@ -179,10 +178,10 @@ def _count_keys(body: bytes) -> int:
     return _strip_strings(body).count(b":")
 
 
-def _count_values(parsed: Any) -> tuple[int, int]:
+def _count_values(parsed: object) -> tuple[int, int]:
     """Count the values in objects and lists, and the keys; the parser has kept only the last of equal keys."""
     values = keys = 0
-    pending = [parsed]
+    pending: list[object] = [parsed]
     while pending:
         value = pending.pop()
         if isinstance(value, dict):
@@ -194,7 +193,7 @@ def _count_values(parsed: Any) -> tuple[int, int]:
     return values + keys, keys
 
 
-class _Members(list[tuple[str, Any]]):
+class _Members(list[tuple[str, object]]):
     """An object of the body with all its members, equal keys included."""
 
 
@@ -203,7 +202,7 @@ def _find_duplicate_keys(body: bytes) -> list[str]:
     # Numbers stay texts: they are not needed, and the standard library refuses some valid ones.
     written = json.loads(body, object_pairs_hook=_Members, parse_int=str, parse_float=str)
     found: list[str] = []
-    pending: list[tuple[tuple[str | int, ...], Any]] = [((), written)]
+    pending: list[tuple[tuple[str | int, ...], object]] = [((), written)]
     while pending:
         place, value = pending.pop()
         if isinstance(value, _Members):

@@ -47,6 +47,7 @@ class Representation:
         tag = etag.format_tag(self.version)
         headers = {**headers, "ETag": tag}
         if etag.is_current_tag(request.headers.getlist("if-none-match"), tag):
+            # A 304 has the headers that the whole answer would have (RFC 9110, section 15.4.5).
             return Response(status_code=304, headers={**headers, "Vary": "Accept-Encoding"})
         if not is_gzip_accepted(request) or len(self.content) < MIN_PACKED_BYTES:
             return Response(self.content, headers=headers, media_type=self.media_type)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TypeVar
 
 from fastapi import Request, Response
 
@@ -20,9 +20,11 @@ from service.api.http.problem_details import (
 from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp
 from service.observability.telemetry import measure_span, note_defect
 
+T = TypeVar("T")
+
 
 async def respond_with_analysis(
-    request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., bytes], *args: Any
+    request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., bytes], *args: object
 ) -> Response:
     """Respond with the JSON answer of an analysis.
 
@@ -33,10 +35,12 @@ async def respond_with_analysis(
     """
     try:
         with measure_span("analysis"):
+            # Large answers are compressed where they are computed; the event loop would stand still meanwhile.
             if is_gzip_accepted(request):
                 work, args = compute_packed, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
+        # 422: the client has sent this mechanism and can make it smaller.
         limit = f"time limit of {CPU_S:g} s" if error.of == "time" else "memory limit"
         detail = f"The analysis exceeded its {limit}; check all sizes and counts."
         raise refuse_invalid_mechanism([("/mechanism", detail)]) from None
@@ -50,7 +54,7 @@ async def respond_with_analysis(
     return Response(content, headers=packed, media_type="application/json")
 
 
-async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work: Callable[..., T], *args: object) -> T:
     """Compute a drawing, a report or an export.
 
     Raises
@@ -61,6 +65,7 @@ async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work:
     try:
         return await answers.draw(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
+        # 409: the design is stored, and no change of the request makes it smaller.
         limit = f"time limit of {DRAWING_CPU_S:g} s" if error.of == "time" else "memory limit"
         raise Refusal(409, "no-drawing", "No drawing", f"The drawing exceeded its {limit}.") from None
     except Busy:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
-from typing import Annotated, Any, TypeVar
+from collections.abc import Awaitable, Callable
+from typing import Annotated, TypeVar
 
 from fastapi import Depends, Request
 
@@ -19,7 +19,7 @@ from service.parts.export.worker import Workshop
 T = TypeVar("T")
 
 
-def _build_dependency(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
+def _build_dependency(name: str, of_type: type[T]) -> Callable[[Request], Awaitable[T]]:
     """Return a dependency that yields the application's state attribute ``name``."""
 
     async def get_part(request: Request) -> T:

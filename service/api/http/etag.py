@@ -20,4 +20,5 @@ def is_current_tag(headers: Iterable[str], current: str) -> bool:
     (True, True)
     """
     opaque = current.removeprefix("W/")
+    # Tags may contain commas, so that the header cannot simply be split.
     return any(header.strip() == "*" or opaque in _TAG_PATTERN.findall(header) for header in headers)

@@ -30,6 +30,7 @@ def read_repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
         return None
     if len(keys) > 1:
         raise refuse_invalid_request([("/header/idempotency-key", "Send only one `Idempotency-Key`.")])
+    # The validated body, not its bytes: an equal problem written differently is the same request.
     stated = body.model_dump(mode="json", exclude_defaults=True)
     canonical = json.dumps(stated, sort_keys=True, separators=(",", ":"))
     return Repeatable(keys[0], hashlib.sha256(canonical.encode()).hexdigest())

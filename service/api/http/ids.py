@@ -13,6 +13,7 @@ ULID_PATTERN = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
 
 def encode_cursor(last_id: str) -> str:
     """Return the cursor of the page after the one that ends with this id."""
+    # Without padding, the cursor can stand in a URL as it is.
     return base64.urlsafe_b64encode(last_id.encode()).decode().rstrip("=")
 
 

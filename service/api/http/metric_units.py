@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, get_args
+from typing import get_args
 
 from pydantic import BaseModel
 
@@ -32,7 +32,7 @@ def collect_measures(result: type[BaseModel]) -> dict[str, Dimension]:
     return {name: next(iter(of)) for name, of in sorted(found.items()) if len(of) == 1}
 
 
-def _collect_models(annotation: Any, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
+def _collect_models(annotation: object, seen: set[type[BaseModel]]) -> set[type[BaseModel]]:
     """Collect all models that a value may contain, at any depth."""
     for model in _iterate_models(annotation):
         if model not in seen:
@@ -42,7 +42,7 @@ def _collect_models(annotation: Any, seen: set[type[BaseModel]]) -> set[type[Bas
     return seen
 
 
-def _iterate_models(annotation: Any) -> Iterator[type[BaseModel]]:
+def _iterate_models(annotation: object) -> Iterator[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
     for part in get_args(annotation):

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from service.error_messages import MAX_FAULTS
+from service.error_messages import MAX_FAULTS, Models
 from service.jobs.store.database import is_unreachable
 from service.observability import telemetry
 from service.refusals import (
@@ -27,6 +27,7 @@ from service.refusals import (
     refuse_invalid_request,
     refuse_not_found,
 )
+from synthesis.model.json_object import JsonObject
 
 __all__ = [
     "FieldError",
@@ -132,6 +133,7 @@ def refuse_busy(with_what: str) -> Refusal:
 
 def refuse_gone() -> Refusal:
     """Build the refusal for a client that has disconnected; it appears only in the log and the metrics."""
+    # HTTP has no status for this; 499 is nginx's.
     return Refusal(499, "gone", "Gone", "The client has disconnected.")
 
 
@@ -144,12 +146,13 @@ def refuse_compiling() -> Refusal:
     )  # fmt: skip
 
 
-def describe_responses(**described: str) -> dict[int | str, dict[str, Any]]:
+def describe_responses(**described: str) -> dict[int | str, JsonObject]:
     """Return the error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
     again = {"Retry-After": {"description": "Seconds to wait before the next attempt.", "schema": {"type": "integer"}}}
     return {
         int(name[1:]): {"description": text, "content": content}
+        # Only these two errors pass by themselves.
         | ({"headers": again} if name in ("e429", "e503") else {})
         for name, text in described.items()
     }
@@ -173,11 +176,26 @@ async def _respond_to_refusal(request: Request, refusal: Exception) -> Response:
 
 async def _respond_to_invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    return await _respond_to_refusal(request, refuse_faults(error.errors(), error.body))
+    return await _respond_to_refusal(request, refuse_faults(error.errors(), error.body, _get_models(request)))
+
+
+def _get_models(request: Request) -> Models:
+    """Return the models of the body and of the query that the operation of a request declares."""
+    route = request.scope.get("route")
+    if not isinstance(route, APIRoute):
+        return {}
+    models: dict[str, object] = {}
+    if route.body_field is not None:
+        models["body"] = route.body_field.field_info.annotation
+    # A query with a model has no other parameters, and only such a query refuses unknown ones.
+    for parameter in route.dependant.query_params:
+        models["query"] = parameter.field_info.annotation
+    return models
 
 
 async def _respond_to_http_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
+    # The framework's own errors: no route has this path, or none has this method.
     if error.status_code == 404:
         return _build_response(request, 404, "/problems/not-found", "Not found", "No such resource; check the path.")
     if error.status_code == 405:
@@ -194,6 +212,7 @@ async def _respond_to_http_error(request: Request, error: Exception) -> Response
 
 
 async def _respond_to_store_error(request: Request, error: Exception) -> Response:
+    # A wrong statement is a defect of the service and becomes a 500.
     if not is_unreachable(error):
         raise error
     log.warning("the store does not answer", error=type(error).__name__)
@@ -216,7 +235,7 @@ def _build_response(
     headers: Mapping[str, str] | None = None,
 ) -> Response:
     telemetry.note_refusal(type_)
-    content: dict[str, Any] = {
+    content: JsonObject = {
         "type": type_,
         "title": title,
         "status": status,

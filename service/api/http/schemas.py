@@ -12,6 +12,7 @@ from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Status
 from service.requests import fill_defaults
 from synthesis.model.answer import Result, optional_field
+from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import Group
 from synthesis.registry import KINDS, Problem, get_first_example
 
@@ -26,6 +27,7 @@ Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, exam
 
 def _check_printable(label: str) -> str:
     if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
+        # PostgreSQL cannot store NUL, and UTF-8 cannot encode surrogates.
         raise ValueError("the label must not contain NUL or lone surrogates")
     return label
 
@@ -113,12 +115,12 @@ class ProblemKind(BaseModel):
     kind: str = Field(examples=list(KINDS))
     title: str
     description: str
-    schema_: dict[str, Any] = Field(
+    schema_: JsonObject = Field(
         alias="schema",
         description="JSON schema of the problem. `x-dimension` gives the dimension of a number: a length in the "
         "problem's unit, an angle in degrees, ...; pure numbers have none.",
     )
-    example: dict[str, Any] = Field(description="A problem of this kind that can be posted as it is.")
+    example: JsonObject = Field(description="A problem of this kind that can be posted as it is.")
     examples: list[ExampleName] = Field(
         description="Names of the `examples` of the schema, in the same order; the first one is `example`."
     )
@@ -169,7 +171,7 @@ class Readiness(Health):
     kernels: Kernels | None = Field(description="Null while unknown, in the first second after the start.")
 
 
-def describe_job(job: JobSummary) -> dict[str, Any]:
+def describe_job(job: JobSummary) -> JsonObject:
     """Return a job as :class:`JobListItem`."""
     return {
         "id": job.id,
@@ -183,7 +185,7 @@ def describe_job(job: JobSummary) -> dict[str, Any]:
     }
 
 
-def describe_progress(job: JobSummary) -> dict[str, Any]:
+def describe_progress(job: JobSummary) -> JsonObject:
     """Return the progress of a job as :class:`Progress`."""
     return {"fraction": job.progress_fraction, "message": job.progress_message}
 

@@ -14,6 +14,7 @@ from service.api.http.auth import Tenant
 from service.api.http.body import JsonRoute
 from service.api.http.computation import respond_with_analysis
 from service.api.http.dependencies import Answers
+from synthesis.model.json_object import JsonObject
 
 TAG = {"name": "analyses", "description": "Analyse a given mechanism."}
 
@@ -25,7 +26,7 @@ ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
 
 
-def describe_analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
+def describe_analysis_responses(description: str, **described: str) -> dict[int | str, JsonObject]:
     """Return the responses of an operation that answers with an analysis, and its errors as for `responses`."""
     return {
         200: {"description": description, "content": {"application/json": {"schema": ANALYSIS}}},
@@ -56,7 +57,7 @@ async def analyse_mechanism(
     return await respond_with_analysis(request, answers, tenant, analyse, body)
 
 
-def complete(document: dict[str, Any]) -> None:
+def complete(document: JsonObject) -> None:
     """Add the models of an analysis to the OpenAPI document."""
     from pydantic.json_schema import models_json_schema
 
@@ -84,5 +85,5 @@ def complete(document: dict[str, Any]) -> None:
     }
 
 
-def _build_union_schema(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
+def _build_union_schema(title: str, models: Iterable[type[BaseModel]]) -> JsonObject:
     return {"title": title, "anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}

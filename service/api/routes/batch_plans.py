@@ -7,7 +7,6 @@ import math
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from typing import Any
 
 from service.api.http.problem_details import Refusal, refuse_invalid_problem, refuse_invalid_request
 from service.api.routes.batch_schemas import MAX_SAMPLES, BatchRequest, Vary
@@ -59,6 +58,7 @@ def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
         # The kind selects the model, so nothing else can be checked without it.
         detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
         raise refuse_invalid_problem([("/problem/kind", detail)])
+    # The plan is stored as JSON, which has no such numbers.
     faults = [*islice(_find_nonfinite_numbers(body), MAX_FAULTS)]
     if faults:
         raise refuse_invalid_request(faults)
@@ -74,6 +74,7 @@ def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
         body.reuse,
     )
     _require_places(plan)
+    # Processor time of this thread: how busy the machine is must not decide which faults are found.
     until = time.thread_time() + CHECK_TIMEOUT_S
     faults = _find_problem_faults(kind, plan)
     if faults:
@@ -93,7 +94,7 @@ def select_default_metrics(metrics: Sequence[str]) -> list[str]:
 
 def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
     """Yield the faults of infinite numbers and NaN anywhere in the problem and the values."""
-    pending: list[tuple[tuple[str | int, ...], Any]] = [
+    pending: list[tuple[tuple[str | int, ...], object]] = [
         (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
     ]
     pending.append((("problem",), body.problem))
@@ -102,6 +103,7 @@ def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
         if isinstance(value, float) and not math.isfinite(value):
             yield format_pointer(place), "This must be a finite number."
         elif isinstance(value, dict | list):
+            # Reversed, because a stack returns the last entry first: faults come in the order of the request.
             inside = value.items() if isinstance(value, dict) else enumerate(value)
             pending += [((*place, step), member) for step, member in reversed([*inside])]
 
@@ -139,6 +141,7 @@ def _find_field_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
         if way == ["kind"]:
             yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
         for other in ways[:k]:
+            # Of two fields one inside the other, the order would decide which values hold.
             if way[: len(other)] == other or other[: len(way)] == way:
                 yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
 
@@ -188,7 +191,7 @@ def _find_metric_faults(body: BatchRequest, kind: str) -> Iterator[tuple[str, st
             yield f"/metrics/{k}", "This metric is given twice; give it once."
 
 
-def _build_values(body: BatchRequest) -> list[Sequence[Any]]:
+def _build_values(body: BatchRequest) -> list[Values]:
     if body.sampling == "latin_hypercube":
         assert body.samples is not None
         given = [v.values if v.values is not None else Span(v.from_ or 0, v.to or 0) for v in body.vary]
@@ -240,7 +243,7 @@ def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) 
     return list(found)
 
 
-def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
+def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[object]]]:
     """Yield samples that cover each value: the places of the values new in it, by field, and all its values."""
     if not plan.grid:
         for number in range(plan.total):

@@ -11,6 +11,7 @@ from service.api.http.schemas import Label, Progress, Timestamp
 from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.store.states import Status
 from synthesis.model.answer import optional_field
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import MAX_MAGNITUDE, Number
 from synthesis.registry import KINDS
 
@@ -21,7 +22,7 @@ MAX_METRICS = 50
 Bound = Annotated[int, Field(strict=True, ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE)] | Number
 """End of a range; an integer stays an integer, because some fields are counts."""
 
-EXAMPLE: dict[str, Any] = {
+EXAMPLE: JsonObject = {
     "problem": {
         "kind": "motion",
         "positions": [
@@ -81,7 +82,7 @@ class BatchRequest(BaseModel):
         title="Batch request", extra="forbid", frozen=True, json_schema_extra={"examples": [EXAMPLE]}
     )
 
-    problem: dict[str, Any] = Field(
+    problem: JsonObject = Field(
         description="A problem as in a job; varied fields may be omitted.",
         json_schema_extra={"examples": [EXAMPLE["problem"]]},
     )
@@ -138,7 +139,7 @@ class Batch(BatchListItem):
 
     model_config = ConfigDict(title="Batch")
 
-    problem: dict[str, Any] = Field(description="The problem as posted.")
+    problem: JsonObject = Field(description="The problem as posted.")
     fields: list[str] = Field(description="JSON pointers to the varied fields.")
     metrics: list[str]
     reuse: bool
@@ -162,7 +163,7 @@ class BatchTable(BaseModel):
         description="The varied fields, `status`, `cached`, `designs` (number that passed), the metrics of the best "
         "design, `job` (id, once the problem has ended) and `failure` (reason of a failure)."
     )
-    rows: list[list[Any]]
+    rows: list[list[object]]
 
 
 class BatchFront(BatchTable):
@@ -174,7 +175,7 @@ class BatchFront(BatchTable):
     greatest: list[str]
 
 
-def describe_batch(batch: BatchSummary) -> dict[str, Any]:
+def describe_batch(batch: BatchSummary) -> JsonObject:
     """Return a batch as :class:`BatchListItem`."""
     done = batch.ended_count
     message = f"{done} of {batch.total}" if batch.status == Status.RUNNING else batch.status.value

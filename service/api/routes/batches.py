@@ -92,6 +92,7 @@ async def create_batch(
 ) -> Response:
     """Accept a problem with varied fields. With the answer the batch is stored, and each of its problems will end."""
     keys = request.headers.getlist("idempotency-key")
+    # Trying the values of a large batch takes long and must not block the event loop.
     kind, plan, cost = await run_in_threadpool(build_plan, body)
     try:
         batch = await desk.accept(
@@ -134,6 +135,7 @@ class BatchFilter(BaseModel):
 async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFilter, Query()]) -> Response:
     """Return a page of the batches, newest first."""
     before = None if filter_.cursor is None else decode_cursor(filter_.cursor)
+    # One more than requested shows whether there is a next page.
     page = await desk.list_page(tenant=tenant, limit=filter_.limit + 1, before=before)
     shown = page[: filter_.limit]
     cursor = encode_cursor(shown[-1].id) if len(page) > filter_.limit else None

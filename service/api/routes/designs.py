@@ -156,6 +156,7 @@ async def get_job_with_result(desk: JobDesk, tenant: str, job_id: str) -> tuple[
     job = await find_job(desk, tenant, job_id)
     if job.result is None:
         what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
+        # Not 404: the job exists, and while it runs it may still get a result.
         raise Refusal(409, "no-result", "No result", f"The job {what}.")
     return job, job.result
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator, Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from fastapi.sse import EventSourceResponse, format_sse_event
@@ -24,6 +24,7 @@ from service.api.routes.jobs import NO_JOB, TAG
 from service.jobs.events.poller import F, Follower, JobPoller
 from service.jobs.store.states import Status
 from service.observability.head import is_head_request
+from synthesis.model.json_object import JsonObject
 
 KEEP_ALIVE_S = 15.0
 """Silence after which a comment is sent, seconds, so that proxies do not take the connection for dead."""
@@ -39,7 +40,7 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-def build_event_schema(item: str) -> dict[str, Any]:
+def build_event_schema(item: str) -> JsonObject:
     """Return the schema of an event whose state is the component ``item``."""
     return {
         "type": "object",
@@ -105,7 +106,7 @@ async def stream_events(
     tenant: str,
     id_: str,
     last_event_id: str | None,
-    shown: Callable[[F], dict[str, Any]],
+    shown: Callable[[F], JsonObject],
     none_such: str,
 ) -> Response:
     """Return the event stream of a job or batch; ``shown`` converts it to JSON-like data with its ``progress``.
@@ -115,6 +116,7 @@ async def stream_events(
     Refusal
         503 if too many clients of the tenant listen or the store does not answer; 404 if the tenant has no such job.
     """
+    # Every stream keeps a connection open; one tenant must not use up those of all.
     if poller.count_listeners(tenant) >= MAX_LISTENERS:
         raise Refusal(
             503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening; try again.",
@@ -124,8 +126,10 @@ async def stream_events(
     if job is None or job.tenant != tenant:
         raise refuse_not_found(none_such)
     seen = _parse_event_id(last_event_id)
+    # The client has the last event; a stream without events would make browsers reconnect for ever.
     if job.status.finished and seen == (job.revision, job.status):
         return Response(status_code=204)
+    # HEAD gets the headers at once; the stream would end only with the job.
     if is_head_request(request.scope):
         return EventSourceResponse(_generate_nothing(), headers=_HEADERS)
     return EventSourceResponse(_generate_events(poller, job, seen, shown), headers=_HEADERS)
@@ -133,6 +137,7 @@ async def stream_events(
 
 async def _read_current(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
     with poller.follow(job_id, tenant) as follower:
+        # The poller reads the jobs of all listeners in one query.
         await follower.wait_for_change(STORE_TIMEOUT_S)
         if not follower.read:
             raise refuse_without_store()
@@ -140,7 +145,7 @@ async def _read_current(poller: JobPoller[F], job_id: str, tenant: str) -> F | N
 
 
 async def _generate_events(
-    poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+    poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], JsonObject]
 ) -> AsyncIterator[bytes]:
     """Generate the events of a job. The stream ends with the job, or without an event when the service stops."""
     with poller.follow(job.id, job.tenant) as follower:
@@ -148,6 +153,7 @@ async def _generate_events(
         follower.update(job)
         while not poller.closed:
             if not await follower.wait_for_change(KEEP_ALIVE_S):
+                # Proxies close connections on which nothing is sent.
                 yield format_sse_event(comment="keep-alive")
                 continue
             event = _format_event(follower, seen, shown)
@@ -159,12 +165,13 @@ async def _generate_events(
 
 
 def _format_event(
-    follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+    follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], JsonObject]
 ) -> bytes | None:
     """Return the event for a client that has the state ``seen``; None if nothing is new."""
     job = follower.job
     if job is None:
         return format_sse_event(event="removed", data_str="{}")
+    # The client may be ahead of the last look of this server at the store.
     if seen is not None and job.revision <= seen[0]:
         return None
     state = seen is None or seen[1] != job.status
@@ -172,10 +179,12 @@ def _format_event(
         event="state" if state else "progress",
         data_str=to_json(shown(job) if state else shown(job)["progress"]).decode(),
         id=f"{job.revision}-{job.status.value}",
+        # Once is enough: browsers keep the time for the whole stream.
         retry=_RECONNECT_MS if seen is None else None,
     )
 
 
+# The unreachable yield makes it a generator.
 async def _generate_nothing() -> AsyncIterator[bytes]:
     return
     yield b""

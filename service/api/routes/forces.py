@@ -83,4 +83,5 @@ async def analyse_forces_of_design(
     Nothing is stored.
     """
     job = await get_solved_job(desk, tenant, job_id)
+    # The process that computes also validates the body.
     return await respond_with_analysis(request, answers, tenant, compute_forces, job, number, query.steps, body)

@@ -146,6 +146,7 @@ async def import_curves(
     the tolerance requires. Elements without a curve are listed with the reason.
     """
     content, media_type = await read_file(request, ACCEPTED_TYPES)
+    # An option without effect is refused, so that no mistake passes unnoticed.
     if pixel_size is not None and not content.startswith(PNG_SIGNATURE):
         raise refuse_invalid_request([("/query/pixel_size", "Only a PNG picture has pixels; omit `pixel_size`.")])
     return await respond_with_reading(
@@ -159,5 +160,6 @@ async def import_curves(
         tolerance=tolerance,
         max_points=max_points,
         pixel_size=pixel_size,
+        # Nearly any text is a table, so only bodies announced as one, or as nothing in particular, are read as tables.
         tables=media_type in ("", *TABLE_TYPES, *ANY_FORMAT_TYPES),
     )

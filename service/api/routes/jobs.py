@@ -133,6 +133,7 @@ async def create_job(
             kind=body.problem.kind,
             label=body.label,
             problem=dump_problem(body.problem),
+            # Brief problems run next to long searches and do not wait for them.
             cost=Cost.SHORT if KINDS[body.problem.kind].brief(body.problem) else Cost.LONG,
             wait_s=wait_s,
             repeatable=read_repeatable(request.headers.getlist("idempotency-key"), body),
@@ -144,6 +145,7 @@ async def create_job(
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if not job.status.finished:
         return as_json(dump_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+    # Without a wait the job is that of an earlier request with the same key.
     return as_json(dump_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
 
 
@@ -161,6 +163,7 @@ async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Qu
     """Return a page of the jobs, newest first, without their problems and results."""
     page = await desk.list_page(
         tenant=tenant,
+        # One more than requested shows whether there is a next page.
         limit=filter_.limit + 1,
         status=None if filter_.status is None else Status(filter_.status),
         kind=filter_.kind,
@@ -227,6 +230,7 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
         ) from None
     if job is None:
         raise refuse_not_found(NO_JOB)
+    # A running job is only stopped by its worker after this answer, hence 202.
     return Response(status_code=204) if job == "deleted" else as_json(dump_job(job), 202)
 
 
@@ -238,6 +242,7 @@ async def find_job(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     Refusal
         404 if the tenant has no such job.
     """
+    # The job of another tenant is answered like one that never existed.
     job = await desk.get(tenant, job_id) if ULID_PATTERN.fullmatch(job_id) else None
     if job is None:
         raise refuse_not_found(NO_JOB)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, get_args
+from typing import Annotated, NamedTuple, get_args
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
@@ -31,6 +31,7 @@ from service.parts.assembly.sizes import (
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_schema import AssemblyView
 from service.parts.export.worker import MAX_PARTS_S, Workshop, make_file, make_item_file
+from synthesis.model.json_object import JsonObject
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
@@ -49,9 +50,9 @@ _MEDIA: dict[File | PartFile, str] = {
 _TEXTS = ("svg", "dxf")
 
 
-def _describe_responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
+def _describe_responses(file: File | PartFile) -> dict[int | str, JsonObject]:
     schema = _TEXT if file in _TEXTS else _BINARY
-    given: dict[str, Any] = {"content": {_MEDIA[file]: {"schema": schema}}}
+    given: JsonObject = {"content": {_MEDIA[file]: {"schema": schema}}}
     if file == "json":
         given = {"model": AssemblyView}
     solid = file == "zip" or file in SOLID_FORMATS
@@ -86,7 +87,7 @@ async def make_parts(
     arranged in planes for these sizes, and a design whose parts would collide in the motion is refused. `print` and
     `mill` need the service's extra `cad`; without it `laser` has no STEP file.
     """
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "zip")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "zip"))
 
 
 @router.get(
@@ -101,7 +102,7 @@ async def export_assembly_step(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number``, in millimetres, with names and colours (AP242)."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "step")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "step"))
 
 
 @router.get(
@@ -116,7 +117,7 @@ async def export_assembly_glb(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return the assembled parts of design ``number`` as binary glTF: in metres, with the shafts upwards along y."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "glb")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "glb"))
 
 
 @router.get(
@@ -135,7 +136,7 @@ async def view_assembly(
     The motion of each moving body is given once, as a rotation about a pivot and the position of the pivot. `lift` is
     the displacement of a part in the exploded view. No CAD is needed; the refusals are those of `parts`.
     """
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "json")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "json"))
 
 
 @router.get(
@@ -150,7 +151,7 @@ async def draw_assembly(
     query: Annotated[AssemblyQuery, Query()],
 ) -> Response:  # fmt: skip
     """Return an isometric picture of the parts of design ``number``, assembled and exploded."""
-    return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, "svg")
+    return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, "svg"))
 
 
 _FORMS: dict[PartFile, str] = {
@@ -168,7 +169,7 @@ def _add_part_route(form: PartFile) -> None:
         request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, name: str,
         query: Annotated[PartsQuery, Query()],
     ) -> Response:  # fmt: skip
-        return await _respond_with_file(request, desk, bench, tenant, job_id, number, query, form, name)
+        return await _respond_with_file(request, desk, bench, tenant, job_id, _FileOrder(number, query, form, name))
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}/parts/{{name}}.{form}",
@@ -198,49 +199,63 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
     for n in range(len(designs)):
         try:
             found[n] = (
-                await _make_content(request, bench, tenant, make_file, _build_order(job, n, {}), "svg")
+                await _make_content(request, bench, tenant, make_file, _build_arguments(job, n, {}), "svg")
             ).decode()
         except Refusal as refusal:
+            # A design without parts does not prevent a report.
             if refusal.status not in (409, 422):
                 raise
             found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
     return found
 
 
-def _build_order(job: SolvedJob, number: int, query: dict[str, Any]) -> dict[str, Any]:
+def _build_arguments(job: SolvedJob, number: int, query: JsonObject) -> JsonObject:
     """Return the arguments for the process that makes the parts."""
     stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": job.result}
     return stored | {"number": number, "query": query}
 
 
+class _FileOrder(NamedTuple):
+    """Number of the design in the path, options, format, and the part if the file is that of one part."""
+
+    number: str
+    query: PartsQuery
+    file: File | PartFile
+    part: str | None = None
+
+
 async def _respond_with_file(
-    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
-    file: File | PartFile, part: str | None = None,
-) -> Response:  # fmt: skip
+    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, order: _FileOrder
+) -> Response:
+    number, query, file, part = order
     job = await get_solved_job(desk, tenant, job_id)
     n = await run_in_threadpool(_check_design_number, job.result, number)
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
+        # 501: another installation of the service can do it, and no change of this design helps.
         raise Refusal(
             501, "no-cad", "No CAD",
             "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
         )  # fmt: skip
-    order = _build_order(job, n, query.model_dump(exclude_unset=True))
+    arguments = _build_arguments(job, n, query.model_dump(exclude_unset=True))
     with measure_span("parts"):
         if part is None:
-            content = await _make_content(request, bench, tenant, make_file, order, file)
+            content = await _make_content(request, bench, tenant, make_file, arguments, file)
         else:
-            content = await _make_content(request, bench, tenant, make_item_file, order, part, file)
+            content = await _make_content(request, bench, tenant, make_item_file, arguments, part, file)
     names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
     if file == "svg":
         headers |= HEADERS["svg"]
+    # Pictures and views are shown in a page, all other files are saved.
     elif file != "json":
         headers["Content-Disposition"] = f'attachment; filename="{name}"'
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _make_content(request: Request, bench: Workshop, tenant: str, work: Callable[..., Any], *args: Any) -> bytes:
+async def _make_content(
+    request: Request, bench: Workshop, tenant: str, work: Callable[..., bytes | FileRefusal], *args: object
+) -> bytes:
     """Return the file that the process makes, from the cache if it has made the same before."""
     try:
         made = await bench.run_cached(request.is_disconnected, tenant, work, *args)

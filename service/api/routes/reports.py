@@ -70,6 +70,7 @@ async def report_job(
     """
     job = await get_solved_job(desk, tenant, job_id)
     with measure_span("report"):
+        # Parts come from another process, so they are made first and passed on.
         built = {}
         if query.assemblies:
             built = await draw_assemblies(request, bench, tenant, job, query.designs)

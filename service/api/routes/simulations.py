@@ -77,6 +77,7 @@ def _add_route(form: Form, export: Simulation) -> None:
         with measure_span("simulation"):
             n, content = await draw_in_turn(request, answers, tenant, simulate_design, job, number, form, query)
         headers = {
+            # A download: browsers must neither show nor execute it.
             "X-Content-Type-Options": "nosniff",
             "Content-Disposition": f'attachment; filename="{job.kind}-{n + 1}.{form}"',
         }

@@ -30,7 +30,7 @@ _IMPORT = re.compile(
     re.MULTILINE,
 )
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
-_UNSUPPORTED = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_UNSUPPORTED_STATEMENT = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
 _TOP_LEVEL_AWAIT = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
 
 # A dynamic import. The types in comments have the same form, but a bracket, a space or a dot follows them.
@@ -107,7 +107,7 @@ def _concatenate(modules: Mapping[str, str], order: list[str]) -> str:
     for name in order:
         exports = _EXPORT.findall(modules[name])
         body = _EXPORT.sub("", _replace_imports(modules, name, entry, external))
-        if unsupported := _UNSUPPORTED.search(body):
+        if unsupported := _UNSUPPORTED_STATEMENT.search(body):
             raise BundleError(f"{name}: a bundle cannot contain the line: {unsupported.group()}")
         call = "await (async () =>" if _TOP_LEVEL_AWAIT.search(body) else "(() =>"
         parts.append(f"const {_variable(name)} = {call} {{\n{body}return {{ {', '.join(exports)} }};\n}})();\n")

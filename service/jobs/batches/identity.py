@@ -25,22 +25,22 @@ def hash_problem(problem: ProblemBase) -> str:
 
     The order of fields, the spelling of numbers and explicitly written defaults make no difference.
     """
-    stated = problem.model_dump(mode="json", exclude_defaults=True)
-    meant = json.dumps([problem.kind, stated], sort_keys=True, separators=(",", ":"))
-    return sha256(f"{hash_solvers()}{meant}".encode()).hexdigest()
+    content = problem.model_dump(mode="json", exclude_defaults=True)
+    statement = json.dumps([problem.kind, content], sort_keys=True, separators=(",", ":"))
+    return sha256(f"{hash_solvers()}{statement}".encode()).hexdigest()
 
 
 @cache
 def hash_solvers() -> str:
     """Return a hash of the solvers' sources and of the versions of the libraries they compute with."""
     parts = [platform.python_version(), platform.machine(), *(f"{name} {version(name)}" for name in LIBRARIES)]
-    told = sha256("\n".join(parts).encode())
+    source_hash = sha256("\n".join(parts).encode())
     for package in ("kinematics", "synthesis"):
         # Sorted, because the order of a folder's entries differs between file systems.
         for name, source in sorted(_list_sources(files(package), package), key=lambda named: named[0]):
-            told.update(f"\n{name}\n".encode())
-            told.update(sha256(source.read_bytes()).digest())
-    return told.hexdigest()
+            source_hash.update(f"\n{name}\n".encode())
+            source_hash.update(sha256(source.read_bytes()).digest())
+    return source_hash.hexdigest()
 
 
 def _list_sources(folder: Traversable, name: str) -> list[tuple[str, Traversable]]:

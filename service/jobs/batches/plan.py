@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from service.jobs.batches.values import Values, decode_values, encode_values
+from synthesis.model.json_object import JsonObject
 
 
 class NoSuchPlace(LookupError):
@@ -36,7 +36,7 @@ class Plan:
         Whether stored answers to equal problems are reused.
     """
 
-    problem: Mapping[str, Any]
+    problem: JsonObject
     fields: Sequence[str]
     values: Sequence[Values]
     grid: bool
@@ -48,7 +48,7 @@ class Plan:
         """Number of samples."""
         return math.prod(map(len, self.values)) if self.grid else len(self.values[0])
 
-    def sample(self, number: int) -> list[Any]:
+    def sample(self, number: int) -> list[object]:
         """Return the values of the varied fields in a sample."""
         if not self.grid:
             return [values[number] for values in self.values]
@@ -59,11 +59,11 @@ class Plan:
             chosen.append(values[place])
         return chosen[::-1]
 
-    def build_statement(self, number: int) -> Any:
+    def build_statement(self, number: int) -> object:
         """Return the problem of a sample as a client would post it."""
         return self.fill_statement(self.sample(number))
 
-    def fill_statement(self, values: Values) -> Any:
+    def fill_statement(self, values: Values) -> object:
         """Return the problem with these values of the varied fields.
 
         Raises
@@ -71,7 +71,7 @@ class Plan:
         NoSuchPlace
             If a pointer leads nowhere.
         """
-        statement: Any = self.problem
+        statement: object = self.problem
         for steps, value in zip(self._steps, values, strict=True):
             statement = _copy_with(statement, steps, value)
         return statement
@@ -100,7 +100,7 @@ class Plan:
 _SHOWN_FIELDS = ("problem", "fields", "metrics", "reuse")
 
 
-def _as_json(value: Any) -> str:
+def _as_json(value: object) -> str:
     return json.dumps(value, separators=(",", ":"))
 
 
@@ -110,7 +110,7 @@ def split_pointer(pointer: str) -> list[str]:
     return [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
 
 
-def _copy_with(value: Any, way: Sequence[str], new: Any) -> Any:
+def _copy_with(value: object, way: Sequence[str], new: object) -> object:
     """Return a copy of ``value`` with ``new`` at the end of the path ``way``; missing objects are created."""
     if not way:
         return new

@@ -13,7 +13,7 @@ from ulid import ULID
 
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.removal import NOT_REMOVED
-from service.jobs.store.schema import JobSummary, SampleRow, batches, samples
+from service.jobs.store.schema import AnyRow, JobSummary, SampleRow, batches, samples
 from service.jobs.store.statements import MAX_IDS
 from service.jobs.store.states import Status
 
@@ -71,7 +71,7 @@ def load_samples(connection: Connection, job_ids: Sequence[str]) -> dict[str, Jo
     return found
 
 
-def _build_summary(row: Any) -> dict[str, Any]:
+def _build_summary(row: AnyRow) -> dict[str, Any]:
     status = Status(row.status)
     stated = {field.name: getattr(row, field.name, None) for field in fields(JobSummary)}
     # A stored sample has ended, in one attempt: the other fields of a job follow from that.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from service.jobs.store.schema import Entry
 from service.jobs.store.states import Status
@@ -88,5 +88,5 @@ class TableRow:
     number: int
     status: Status
     cached: bool
-    figures: list[Any] | None
+    figures: list[object] | None
     error: str | None

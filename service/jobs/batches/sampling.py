@@ -5,7 +5,6 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from service.jobs.batches.values import PickedValues, Values
 from service.loading import IMPORTS
@@ -19,7 +18,7 @@ class Span:
     end: float
 
 
-Varied = Sequence[Any] | Span
+Varied = Values | Span
 
 
 def sample_evenly(begin: float, end: float, count: int) -> Sequence[float]:

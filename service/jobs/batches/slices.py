@@ -14,7 +14,7 @@ import time
 from collections import OrderedDict, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import structlog
 from pydantic_core import from_json
@@ -29,6 +29,7 @@ from service.jobs.processes.stop_flag import SolverStopped, Solving
 from service.jobs.store.database import write_when_reachable
 from service.jobs.store.schema import Claim, format_now
 from service.jobs.store.states import Status
+from synthesis.model.problem import ProblemBase
 
 SLICE_S = 0.1
 """Time after which a slice begins no further sample, seconds."""
@@ -53,7 +54,7 @@ class _PreparedSample:
     """A sample ready to be solved: the problem and its digest, or the fault that prevents it."""
 
     number: int
-    problem: Any = None
+    problem: ProblemBase | None = None
     digest: str | None = None
     fault: faults.Fault | None = None
 
@@ -95,8 +96,8 @@ class SliceSolver:
         outcome: Outcome = "slice"
         until = time.perf_counter() + SLICE_S
         try:
-            for stated, answer in self._attach_answers(batch, plan, todo, new):
-                new.append(self._finish_sample(batch, plan, stated, answer))
+            for sample, answer in self._attach_answers(batch, plan, todo, new):
+                new.append(self._finish_sample(batch, plan, sample, answer))
                 if time.perf_counter() >= until:
                     break
         except SolverStopped:
@@ -170,14 +171,14 @@ class SliceSolver:
             group = self._group(batch, plan, left)
             stored: dict[str, str | OwnAnswer] = {}
             if plan.reuse:
-                wanted = {stated.digest for stated in group if stated.digest is not None}
-                stored = write_when_reachable(self._store.find_answers, batch, wanted - own.keys())
-            for stated in group:
+                digests = {sample.digest for sample in group if sample.digest is not None}
+                stored = write_when_reachable(self._store.find_answers, batch, digests - own.keys())
+            for sample in group:
                 # The caller appends to `new` between two yields: the last entry is the sample yielded before.
                 if plan.reuse and new and new[-1].digest is not None:
                     own[new[-1].digest] = OwnAnswer(new[-1].number, new[-1].figures)
-                known_by = stated.digest or ""
-                yield stated, own.get(known_by) or stored.get(known_by)
+                known_by = sample.digest or ""
+                yield sample, own.get(known_by) or stored.get(known_by)
 
     def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_PreparedSample]:
         """Prepare the next samples of ``left`` and remove them from it, as many as are queried together.
@@ -238,6 +239,7 @@ class SliceSolver:
 
         if prepared.fault is not None:
             return prepared.fault
+        assert prepared.problem is not None
         try:
             with self._solving.track_work(prepared.number):
                 return dispatch.solve(

@@ -15,10 +15,12 @@ from itertools import pairwise
 from typing import Any
 
 from sqlalchemy import (
+    ColumnElement,
     Connection,
     Engine,
     Select,
     String,
+    Update,
     case,
     column,
     exists,
@@ -36,7 +38,7 @@ from service.jobs.batches.reading import make_sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, EndedSample, OwnAnswer, Share, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
-from service.jobs.store.schema import as_stored, as_values, batches, format_now, jobs, samples
+from service.jobs.store.schema import AnyRow, as_stored, as_values, batches, format_now, jobs, samples
 from service.jobs.store.statements import (
     COUNT_QUEUED,
     MAX_CRASHES,
@@ -271,11 +273,11 @@ class BatchStore:
     def _return_share(
         self, share_id: str, claim: str, number: int | None, retries: int, error: Callable[[str], str]
     ) -> Status | None:
-        held = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
+        claimed = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
             jobs.c.id == share_id, jobs.c.claim == claim, jobs.c.status == Status.RUNNING
         )
         with self._engine.begin() as connection:
-            row = connection.execute(held.with_for_update()).one_or_none()
+            row = connection.execute(claimed.with_for_update()).one_or_none()
             if row is None:
                 return None
             left = Share.read(row.problem)
@@ -397,13 +399,13 @@ def _find_culprit(connection: Connection, batch_id: str, left: Share, number: in
     return next((n for n in (*supposed, *range(left.first, left.end)) if n not in stored), None)
 
 
-def _build_finish(share_id: str) -> Any:
+def _build_finish(share_id: str) -> Update:
     return build_move(
         "succeed", share_id, finished_at=format_now(), progress_fraction=1.0, progress_message="succeeded"
     )
 
 
-def _build_requeue(share_id: str, left: Share, **values: Any) -> Any:
+def _build_requeue(share_id: str, left: Share, **values: object) -> Update:
     return build_move("requeue", share_id, **{**REQUEUED_VALUES, "problem": left.dump(), **values})
 
 
@@ -432,7 +434,7 @@ def _store_samples(connection: Connection, batch: BatchSummary, new: Sequence[En
     return True
 
 
-def _select_results(tenant: str, digests: Collection[str]) -> Select[Any]:
+def _select_results(tenant: str, digests: Collection[str]) -> Select[tuple[str, str | None]]:
     """Return a query for each digest with one of the tenant's results for it, or NULL."""
     wanted = values(column("digest", String), name="wanted").data([(digest,) for digest in digests]).cte("wanted")
     results = [
@@ -445,7 +447,7 @@ def _select_results(tenant: str, digests: Collection[str]) -> Select[Any]:
     return select(wanted.c.digest, func.coalesce(*results).label("result"))
 
 
-def _filter_samples(batch_id: str, first: int, end: int) -> Sequence[Any]:
+def _filter_samples(batch_id: str, first: int, end: int) -> Sequence[ColumnElement[bool]]:
     """Return the conditions for the samples of a batch from ``first`` to before ``end``."""
     return samples.c.batch == batch_id, samples.c.number >= first, samples.c.number < end
 
@@ -454,5 +456,5 @@ def _find_stored(connection: Connection, batch_id: str, first: int, end: int) ->
     return set(connection.execute(select(samples.c.number).where(*_filter_samples(batch_id, first, end))).scalars())
 
 
-def _load_row(connection: Connection, batch_id: str) -> Any:
+def _load_row(connection: Connection, batch_id: str) -> AnyRow | None:
     return connection.execute(select(*_ROW_COLUMNS).where(batches.c.id == batch_id, removal.NOT_REMOVED)).one_or_none()

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.jobs.batches.plan import Plan
@@ -18,7 +19,7 @@ from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.store.states import Status
 
-Rows = np.ndarray[Any, np.dtype[np.float64]]
+Rows = NDArray[np.float64]
 
 SIGNED_METRICS = ("relative_error", "error")
 """Metrics that are signed errors of ratios; their absolute values are compared."""
@@ -43,7 +44,7 @@ class Table:
         for rows in self._iterate_chunks():
             yield _write_rows([[_format_cell(value) for value in row] for row in rows])
 
-    def as_json(self, **more: Any) -> Iterator[bytes]:
+    def as_json(self, **more: object) -> Iterator[bytes]:
         """Yield a JSON object of the columns, the fields ``more`` and the rows, in pieces."""
         yield to_json({"columns": self.columns, **more})[:-1] + b',"rows":['
         comma = b""
@@ -141,7 +142,7 @@ _BLOCK_ROWS = 256
 """Number of rows compared with the earlier ones at a time; bounds the memory of the comparison."""
 
 
-def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
+def _as_good(rows: Rows, others: Rows) -> NDArray[np.bool_]:
     """Return for each row (n) whether each other row (m) is as good in every column; shape (n, m)."""
     as_good = np.ones((len(rows), len(others)), bool)
     for row, other in zip(rows.T, others.T, strict=True):
@@ -149,17 +150,17 @@ def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
     return as_good
 
 
-def _write_rows(rows: Iterable[Sequence[Any]]) -> bytes:
+def _write_rows(rows: Iterable[Sequence[object]]) -> bytes:
     text = io.StringIO()
     csv.writer(text).writerows(rows)
     return text.getvalue().encode()
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _format_cell(value: Any) -> Any:
+def _format_cell(value: object) -> object:
     if value is None or isinstance(value, str):
         return value
     return repr(value) if _is_number(value) else json.dumps(value)

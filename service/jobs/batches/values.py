@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-Values = Sequence[Any]
+Values = Sequence[object]
 
 
 @dataclass(frozen=True)
-class PickedValues(Sequence[Any]):
+class PickedValues(Sequence[object]):
     """A sequence of repeated values: the ``n``-th element is the value at index ``places[n]``.
 
     Attributes
@@ -27,7 +27,7 @@ class PickedValues(Sequence[Any]):
         Indices into ``among``, from 0.
     """
 
-    among: Sequence[Any]
+    among: Sequence[object]
     places: array[int]
 
     def __len__(self) -> int:
@@ -37,7 +37,7 @@ class PickedValues(Sequence[Any]):
         return self.among[self.places[number]]
 
 
-def encode_values(values: Values) -> Any:
+def encode_values(values: Values) -> object:
     """Encode values as JSON-like data for :func:`decode_values`: lists unchanged, arrays and picks in base64."""
     if isinstance(values, PickedValues):
         return {"among": values.among, "places": _encode_numbers(values.places)}
@@ -55,11 +55,11 @@ def decode_values(data: Any) -> Values:
     )
 
 
-def _encode_numbers(numbers: array[Any]) -> str:
+def _encode_numbers(numbers: array[int] | array[float]) -> str:
     return b64encode(numbers.tobytes()).decode()
 
 
 def _decode_numbers(type_: str, text: str) -> array[Any]:
-    numbers: array[Any] = array(type_)
+    numbers: array[int] | array[float] = array(type_)
     numbers.frombytes(b64decode(text))
     return numbers

@@ -8,11 +8,10 @@ the database, in the column ``due_at``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from sqlalchemy import Engine, delete, func, insert, select, update
 
-from service.jobs.store.schema import StoreClock, hosts, jobs
+from service.jobs.store.schema import AnyRow, StoreClock, hosts, jobs
 from service.jobs.store.statements import LEASE_S, MAX_KILLS, build_death_update
 from service.jobs.store.states import Status
 
@@ -89,7 +88,7 @@ class LeaseStore:
             return connection.execute(query).scalar() or 0
 
 
-def _is_useless(row: Any, claim: str) -> bool:
+def _is_useless(row: AnyRow | None, claim: str) -> bool:
     # A claim stays valid when its job has ended normally: its lane is about to release it anyway.
     if row is None:
         return True

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
 
 import psycopg
 import structlog
@@ -28,11 +27,11 @@ log = structlog.get_logger(__name__)
 class StoreListener(threading.Thread):
     """Calls back with the content of each notification, and with None if it may have missed some."""
 
-    def __init__(self, url: str, channel: str, told: Changed) -> None:
+    def __init__(self, url: str, channel: str, notify: Changed) -> None:
         super().__init__(name="store-listener", daemon=True)
         self._engine = create_listener_engine(url)
         self._channel = channel
-        self._told = told
+        self._told = notify
         self._stopping = threading.Event()
 
     def stop(self) -> None:
@@ -53,7 +52,8 @@ class StoreListener(threading.Thread):
     def _receive_notifications(self) -> None:
         with self._engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
             connection.execute(text(f"LISTEN {self._channel}"))
-            driver: Any = connection.connection.driver_connection
+            driver = connection.connection.driver_connection
+            assert isinstance(driver, psycopg.Connection)
             # Changes before LISTEN took effect were missed: subscribers must read the store once.
             self._told(None)
             while not self._stopping.is_set():

@@ -161,13 +161,13 @@ class JobPoller(Generic[F]):
             pass
 
     async def _read(self) -> None:
-        wanted = self._list_unfinished()
-        if not wanted:
+        unfinished = self._list_unfinished()
+        if not unfinished:
             return
         # Followers that arrive during the query wait for the next one: this answer may predate them.
-        asked = [(job_id, follower) for job_id in wanted for follower in self._followers[job_id]]
+        asked = [(job_id, follower) for job_id in unfinished for follower in self._followers[job_id]]
         try:
-            summaries = await run_in_threadpool(self._store.load_summaries, wanted)
+            summaries = await run_in_threadpool(self._store.load_summaries, unfinished)
         except Exception:  # any error of the database driver: the streams wait until it answers again
             log.exception("the store could not be read for the event streams")
             await asyncio.sleep(PERIOD_S)

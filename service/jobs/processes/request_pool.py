@@ -13,12 +13,24 @@ import hashlib
 import threading
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from service.jobs.processes.request_queue import Call, RequestQueue
 from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
-__all__ = ["Busy", "ClientGone", "GivenUp", "Limits", "PoolMetrics", "ProcessLost", "RequestPool", "hash_call"]
+__all__ = [
+    "Busy",
+    "ClientGone",
+    "GivenUp",
+    "Limits",
+    "PoolMetrics",
+    "ProcessLost",
+    "ProcessStart",
+    "RequestPool",
+    "hash_call",
+]
+
+T = TypeVar("T")
 
 MAX_WAIT_S = 20.0
 """Default time that a call waits for its turn, seconds."""
@@ -43,7 +55,7 @@ class PoolMetrics(Protocol):
         ...
 
 
-def hash_call(work: Callable[..., Any], args: tuple[Any, ...]) -> bytes:
+def hash_call(work: Callable[..., object], args: tuple[object, ...]) -> bytes:
     """Return a hash that is equal for calls of the same function with the same arguments."""
     return hashlib.sha256(repr((work.__module__, work.__qualname__, args)).encode()).digest()
 
@@ -55,27 +67,23 @@ class RequestPool:
     ----------
     name : str
         Name of the threads and processes, and label in the metrics.
-    prepare : callable
-        First call in a process, with ``settings``; it restricts the process and limits its memory.
+    start : ProcessStart
+        How processes are started and prepared.
     hands : int
         Maximum number of concurrent calls, of which at most ``max_long`` may be long; by default all.
     wait_s : float
         Time that a call waits for its turn, seconds.
-    forks : callable
-        See :class:`~service.jobs.processes.request_worker.ProcessStart`; by default processes are spawned.
     """
 
     def __init__(
         self,
         name: str,
-        prepare: Callable[..., Any],
-        settings: tuple[Any, ...],
+        start: ProcessStart,
         limits: Limits,
         *,
         hands: int = 1,
         max_long: int | None = None,
         wait_s: float = MAX_WAIT_S,
-        forks: Callable[[], bool] = lambda: False,
         metrics: PoolMetrics | None = None,
     ) -> None:
         self.name = name
@@ -83,7 +91,6 @@ class RequestPool:
         self._beginning = threading.Lock()
         self._queue = RequestQueue(hands if max_long is None else max_long)
         self._asked: dict[bytes, tuple[Call, asyncio.Future[Any]]] = {}
-        start = ProcessStart(prepare, settings, forks)
         self.hands = [Hand(f"{name}-{n}", self._queue, start, limits) for n in range(hands)]
 
     def begin(self) -> None:
@@ -96,7 +103,7 @@ class RequestPool:
         """Return the number of calls by state."""
         return self._queue.count_calls()
 
-    async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any) -> Any:
+    async def call(self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object) -> T:
         """Call a function of a module in a process and return its answer.
 
         Parameters
@@ -112,7 +119,8 @@ class RequestPool:
             And the exceptions of the function.
         """
         try:
-            return await self._wait_for(gone, tenant, work, args)
+            answer: T = await self._wait_for(gone, tenant, work, args)
+            return answer
         except GivenUp as error:
             self._count(error.of)
             raise
@@ -134,7 +142,7 @@ class RequestPool:
             self._metrics.count_given_up(self.name, reason)
 
     async def _wait_for(
-        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], args: tuple[Any, ...]
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., object], args: tuple[object, ...]
     ) -> Any:
         self.begin()
         key = hash_call(work, args)

@@ -12,11 +12,11 @@ import pickle
 import sys
 from collections.abc import Callable
 from multiprocessing.connection import Connection
-from typing import Any, Literal
+from typing import Literal
 
 import structlog
 
-Message = tuple[Literal["ready", "taken", "compiling", "bytes", "returned", "raised"], Any]
+Message = tuple[Literal["ready", "taken", "compiling", "bytes", "returned", "raised"], object]
 
 READY_MESSAGE: Message = ("ready", None)
 TAKEN_MESSAGE: Message = ("taken", None)
@@ -30,7 +30,7 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 log = structlog.get_logger(__name__)
 
 
-def serve_calls(pipe: Connection, prepare: Callable[..., Any], settings: tuple[Any, ...]) -> None:
+def serve_calls(pipe: Connection, prepare: Callable[..., object], settings: tuple[object, ...]) -> None:
     """Execute the calls from a pipe until it is closed.
 
     Parameters
@@ -62,7 +62,7 @@ def read_cpu_seconds(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / _TICKS
 
 
-def _call(work: Callable[..., Any], args: tuple[Any, ...]) -> tuple[bool, Any]:
+def _call(work: Callable[..., object], args: tuple[object, ...]) -> tuple[bool, object]:
     """Execute a call; return whether it raised, and the value returned or raised."""
     try:
         return False, work(*args)
@@ -74,7 +74,7 @@ def _call(work: Callable[..., Any], args: tuple[Any, ...]) -> tuple[bool, Any]:
         return True, _make_sendable(error)
 
 
-def _send_answer(pipe: Connection, raised: bool, answer: Any) -> None:
+def _send_answer(pipe: Connection, raised: bool, answer: object) -> None:
     if raised:
         pipe.send(("raised", answer))
     elif isinstance(answer, bytes):
@@ -107,10 +107,10 @@ def _report_compilations(pipe: Connection) -> None:
     class Reporter(event.Listener):
         """Sends a message at the start of each compilation."""
 
-        def on_start(self, event: Any) -> None:
+        def on_start(self, event: event.Event) -> None:
             pipe.send(COMPILING_MESSAGE)
 
-        def on_end(self, event: Any) -> None:
+        def on_end(self, event: event.Event) -> None:
             """Do nothing: the end of the call is message enough."""
 
     event.register("numba:compile", Reporter())

@@ -25,8 +25,8 @@ class Call:
     that the call turned out to be long, ``counted`` that it is counted among the running long calls.
     """
 
-    work: Callable[..., Any]
-    args: tuple[Any, ...]
+    work: Callable[..., object]
+    args: tuple[object, ...]
     tenant: str
     future: Future[Any] = field(default_factory=Future)
     abandoned: threading.Event = field(default_factory=threading.Event)

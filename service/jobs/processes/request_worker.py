@@ -77,23 +77,28 @@ class Limits:
     short_s: float | None = None
 
 
+def _return_false() -> bool:
+    return False
+
+
 @dataclass(frozen=True)
 class ProcessStart:
     """Start of the processes of a pool.
 
+    ``prepare`` is the first call in a process, with ``settings``; it restricts the process and limits its memory.
     ``forks`` returns whether they are forked from a process that has loaded the libraries
     (:mod:`multiprocessing.forkserver`), which takes some hundredths of a second; else they are spawned.
     """
 
-    prepare: Callable[..., Any]
-    settings: tuple[Any, ...]
-    forks: Callable[[], bool]
+    prepare: Callable[..., object]
+    settings: tuple[object, ...]
+    forks: Callable[[], bool] = _return_false
 
     def start_process(self, name: str) -> tuple[BaseProcess, Connection]:
         """Start a process, which prepares itself after the return, and return it with the pipe to it."""
         export_parent_pid()
         # A child forked from the server itself would inherit the locks of its threads and its open connections.
-        context: Any = get_context("forkserver" if self.forks() else "spawn")
+        context = get_context("forkserver") if self.forks() else get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(
             target=serve_calls, args=(theirs, self.prepare, self.settings), name=name, daemon=True
@@ -188,7 +193,7 @@ class Hand(threading.Thread):
         self._queue.finish(call)
         _settle(call.future, answer=answer)
 
-    def _compute_answer(self, call: Call) -> Any:
+    def _compute_answer(self, call: Call) -> object:
         # A second try, because the process may have died idle just before the first.
         pipe = self._send_call(call) or self._send_call(call)
         if pipe is None or self.process is None or self.process.pid is None:
@@ -319,7 +324,7 @@ def _receive(pipe: Connection) -> Any:
         raise EOFError from error
 
 
-def _settle(future: Future[Any], *, answer: Any = None, error: Exception | None = None) -> None:
+def _settle(future: Future[Any], *, answer: object = None, error: Exception | None = None) -> None:
     """Set the outcome of a running future."""
     if error is not None:
         future.set_exception(error)

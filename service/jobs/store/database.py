@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import sqlite3
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal, ParamSpec, TypeVar
+from typing import Literal, ParamSpec, TypeVar
 from urllib.parse import unquote, urlsplit
 
 import structlog
@@ -81,7 +82,7 @@ def connect(url: str, *, durable: bool) -> Engine:
     synchronous: Literal["FULL", "NORMAL"] = "FULL" if durable else "NORMAL"
 
     @event.listens_for(engine, "connect")
-    def _prepare(connection: Any, _record: object) -> None:
+    def _prepare(connection: sqlite3.Connection, _record: object) -> None:
         connection.execute("PRAGMA journal_mode=WAL")
         connection.execute(f"PRAGMA synchronous={synchronous}")
 
@@ -180,7 +181,8 @@ def _begin_exclusive(engine: Engine) -> Iterator[Connection]:
             yield connection
             connection.commit()
             return
-        driver: Any = connection.connection.driver_connection
+        driver = connection.connection.driver_connection
+        assert isinstance(driver, sqlite3.Connection)
         usual, driver.isolation_level = driver.isolation_level, None
         try:
             connection.exec_driver_sql("BEGIN IMMEDIATE")

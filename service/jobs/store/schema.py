@@ -7,11 +7,14 @@ from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Boolean, Column, Float, Index, Integer, MetaData, String, Table, Text, text
+from sqlalchemy import Boolean, Column, Float, Index, Integer, MetaData, Row, String, Table, Text, text
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import FunctionElement
 
 from service.jobs.store.states import UNFINISHED_STATES, Cost, Status
+
+AnyRow = Row[*tuple[Any, ...]]
+"""A row of a query; the tables carry no static types of their columns."""
 
 metadata = MetaData()
 

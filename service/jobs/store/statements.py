@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Integer, bindparam, case, func, insert, select, update
+from sqlalchemy import Case, ColumnElement, Integer, Update, bindparam, case, func, insert, select, update
 from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
@@ -44,7 +44,7 @@ IS_SINGLE_JOB = jobs.c.batch.is_(None)
 """Condition for jobs posted by clients, as opposed to shares of batches."""
 
 
-def build_move(name: str, job_id: Any, **values: Any) -> Any:
+def build_move(name: str, job_id: str | ColumnElement[str], **values: object) -> Update:
     """Build the update that makes the named move with a job in a source state; ``values`` are stored with it."""
     move = MOVES[name]
     return (
@@ -102,7 +102,7 @@ def build_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cos
     }
 
 
-def build_turn(tenant: Any, cost: Any, *, share: bool = False) -> Later:
+def build_turn(tenant: str | ColumnElement[str], cost: str | ColumnElement[str], *, share: bool = False) -> Later:
     """Build the turn of a tenant's next job: after the tenant's other jobs, and not before the present turn.
 
     Jobs are taken in the order of their turns, which is a round robin: each waiting tenant has one job in each turn. A
@@ -121,7 +121,7 @@ def build_turn(tenant: Any, cost: Any, *, share: bool = False) -> Later:
     return Later(func.coalesce(own.scalar_subquery(), first), func.coalesce(present.scalar_subquery(), first))
 
 
-def build_long_turn() -> Any:
+def build_long_turn() -> Case[int]:
     """Build the turn of a job or share that becomes long: after the tenant's other long ones."""
     tenant = jobs.c.tenant
     return case((IS_SINGLE_JOB, build_turn(tenant, Cost.LONG)), else_=build_turn(tenant, Cost.LONG, share=True))
@@ -130,7 +130,7 @@ def build_long_turn() -> Any:
 REPEATED_TURN = case((IS_SINGLE_JOB, IMMEDIATE_TURN), else_=build_turn(jobs.c.tenant, jobs.c.cost, share=True))
 """The turn of a requeued job or share."""
 
-REQUEUED_VALUES: Mapping[str, Any] = {
+REQUEUED_VALUES: Mapping[str, object] = {
     "progress_fraction": 0.0,
     "progress_message": "queued",
     "started_at": None,

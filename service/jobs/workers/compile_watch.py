@@ -10,7 +10,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from numba.core import event
 
@@ -48,7 +47,7 @@ class FirstUse(event.Listener):
         finally:
             self._thread = None
 
-    def on_start(self, event: Any) -> None:
+    def on_start(self, event: event.Event) -> None:
         """Note the start of a compilation; the kernels that it calls are compiled inside."""
         # Other threads, such as the warm-up, compile too; they do not hold the job up.
         if self._thread == threading.get_ident():
@@ -57,7 +56,7 @@ class FirstUse(event.Listener):
                 self._solving.pause()
                 self._progress(self._last[0], COMPILING_TEXT)
 
-    def on_end(self, event: Any) -> None:
+    def on_end(self, event: event.Event) -> None:
         """Note the end of a compilation, successful or not."""
         if self._thread == threading.get_ident():
             self._depth -= 1

@@ -18,11 +18,11 @@ import signal
 import threading
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 
 import pebble
 import structlog
@@ -65,6 +65,9 @@ pebble.CONSTS.term_timeout = 0.3
 Reason = Literal["cancelled", "outstayed", "the service stops"]
 """Reason for which a job is stopped early; ``outstayed``: it takes too long for a lane reserved for short jobs."""
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 log = structlog.get_logger(__name__)
 
 
@@ -74,6 +77,13 @@ class WorkerLost(Exception):
     def __init__(self, reason: str, *, killed: bool = False) -> None:
         self.killed = killed
         super().__init__(reason)
+
+
+class Stores(NamedTuple):
+    """Stores that a lane writes to when its worker has died or was stopped."""
+
+    jobs: JobStore
+    batches: BatchStore
 
 
 class Lane(threading.Thread):
@@ -87,8 +97,7 @@ class Lane(threading.Thread):
         self,
         name: str,
         turns: Turns,
-        store: JobStore,
-        batches: BatchStore,
+        stores: Stores,
         settings: worker.WorkerSettings,
         timeout_s: float,
         changed: Changed,
@@ -97,8 +106,7 @@ class Lane(threading.Thread):
     ) -> None:
         super().__init__(name=name, daemon=True)
         self._turns = turns
-        self._store = store
-        self._batches = batches
+        self._store, self._batches = stores
         self._settings = settings
         self._timeout_s = timeout_s
         self._changed = changed
@@ -316,7 +324,7 @@ class Lane(threading.Thread):
             log.info("job requeued", job=job.job_id, reason="it is longer than expected")
             self._turns.wake()
 
-    def _call(self, function: Any, *args: Any, job: Claim | None = None) -> Any:
+    def _call(self, function: Callable[..., T], *args: object, job: Claim | None = None) -> T:
         """Call a function in the worker and return its answer.
 
         Raises
@@ -341,7 +349,8 @@ class Lane(threading.Thread):
                 self._solving.stop()
         try:
             self._future.add_done_callback(lambda _: self._stirred.set())
-            return self._wait_for_answer(job)
+            answer: T = self._wait_for_answer(job)
+            return answer
         except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
@@ -385,7 +394,7 @@ class Lane(threading.Thread):
             with self._lock:
                 self._stop_job("outstayed")
 
-    def _write_with_retries(self, write: Any, *args: Any, **options: Any) -> Any:
+    def _write_with_retries(self, write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T | None:
         """Write to the store, retrying while it is unreachable: the job would be lost until a restart otherwise."""
         while True:
             try:

@@ -10,7 +10,7 @@ from service.jobs.batches.store import BatchStore
 from service.jobs.executor import Changed
 from service.jobs.job_store import JobStore
 from service.jobs.store.database import connect
-from service.jobs.workers.lane import Lane
+from service.jobs.workers.lane import Lane, Stores
 from service.jobs.workers.scheduler import Turns
 from service.jobs.workers.worker import WorkerSettings
 from service.observability.metrics import WorkerMetrics
@@ -62,8 +62,7 @@ class LocalExecutor:
             lane = Lane(
                 f"lane-{n}",
                 self._turns,
-                self._store,
-                BatchStore(self._engine),
+                Stores(self._store, BatchStore(self._engine)),
                 for_workers,
                 self._settings.job_timeout_s,
                 self._notify_subscriber,
@@ -104,7 +103,7 @@ class LocalExecutor:
 
     def list_claims(self) -> dict[str, str]:
         """Return the ids of the jobs that the lanes run, by their claims."""
-        return dict(held for lane in self._lanes if (held := lane.current_claim) is not None)
+        return dict(claim for lane in self._lanes if (claim := lane.current_claim) is not None)
 
     def drop(self, claim: str) -> None:
         """Stop the job that a lane runs under a claim that is no longer valid."""

@@ -104,14 +104,14 @@ class Turns:
         """
         with self._news:
             calls, claim = self._calls, None
-            asked = self._open
-        if asked:
+            was_open = self._open
+        if was_open:
             claim = self._request_claim(seat, free_since)
         with self._news:
             # An empty answer settles all calls made before the question; a claim settles one of them.
             self._calls = max(0, self._calls - (calls if claim is None else 1))
             if claim is None:
-                self._news.wait_for(lambda: self._calls > 0 or self._open != asked, ASK_PERIOD_S)
+                self._news.wait_for(lambda: self._calls > 0 or self._open != was_open, ASK_PERIOD_S)
         return claim
 
     def release(self, seat: Seat) -> None:
@@ -137,8 +137,8 @@ class Turns:
         return len(self._seats) - self._most_long
 
     def _is_long(self, seat: Seat) -> bool:
-        held = self._busy.get(seat)
-        return held is not None and held.cost == Cost.LONG
+        claim = self._busy.get(seat)
+        return claim is not None and claim.cost == Cost.LONG
 
     def _request_claim(self, seat: Seat, free_since: float) -> Claim | None:
         with self._asking:
@@ -180,7 +180,7 @@ class Turns:
             free = sum(other is not seat and other not in self._busy for other in self._seats)
             if free >= self._reserved_count:
                 return ()
-            return {held.tenant for held in self._busy.values() if held.cost == Cost.SHORT}
+            return {claim.tenant for claim in self._busy.values() if claim.cost == Cost.SHORT}
 
     def _is_long_allowed(self, seat: Seat, free_since: float) -> bool:
         with self._news:

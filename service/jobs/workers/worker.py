@@ -155,7 +155,7 @@ def _solve(post: _Post, job: Claim) -> tuple[str, str]:
     problem = load_stored_problem(job.kind, job.problem)
     with (
         post.progress.track_attempt(job.job_id, job.attempt) as progress,
-        post.first_use.watch_progress(progress) as told,
+        post.first_use.watch_progress(progress) as report,
     ):
-        result = dispatch.solve(problem, post.solving.make_stoppable(told)).model_dump_json()
+        result = dispatch.solve(problem, post.solving.make_stoppable(report)).model_dump_json()
     return result, hash_problem(problem)

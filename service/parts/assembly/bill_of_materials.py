@@ -33,13 +33,13 @@ def list_row(item: Item) -> list[str]:
     if part.sort == "pin":
         # Pins are measured along their axis.
         sizes = (part.high - part.low, width, width)
-    told = [format_millimetres(size) for size in sizes]
+    extents = [format_millimetres(size) for size in sizes]
     mass = "" if part.mass is None else f"{part.mass:.9g}"
     return [
         item.name,
         str(len(item.parts)),
         part.material,
-        *told,
+        *extents,
         describe_holes(part),
         item.planes,
         part.standard,
@@ -50,10 +50,10 @@ def list_row(item: Item) -> list[str]:
 def describe_holes(part: Part) -> str:
     """List the holes of a part: diameters, width and length of slots, and extents of other shapes."""
     round_ones = Counter(format_millimetres(2.0 * hole.radius) for hole in part.region.holes if isinstance(hole, Disc))
-    told = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
+    described = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
     shaped = Counter(_describe_shape(hole) for hole in part.region.holes if not isinstance(hole, Disc))
-    told += [words if count == 1 else f"{count} x {words}" for words, count in shaped.items()]
-    return "; ".join(told)
+    described += [words if count == 1 else f"{count} x {words}" for words, count in shaped.items()]
+    return "; ".join(described)
 
 
 def format_millimetres(value: float) -> str:

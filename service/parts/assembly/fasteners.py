@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from service.parts.assembly.model import Carrier, Part, Sort
 from service.parts.assembly.sizes import Process, Sizes
@@ -46,6 +47,27 @@ def _make_prisms(
     return tuple(body for body in found if body.high > body.low)
 
 
+class PinShape(NamedTuple):
+    """Deviations of a pin from a plain cylinder with a head below and a cap above.
+
+    Attributes
+    ----------
+    seats : sequence of Prism
+        Sections of the shank that are not cylindrical, in order of height.
+    stub : float
+        Length of the pin beyond its cap or upper ring.
+    upside_down : bool
+        Whether head, cap and stub are at opposite ends.
+    """
+
+    seats: Sequence[Prism] = ()
+    stub: float = 0.0
+    upside_down: bool = False
+
+
+PLAIN_PIN = PinShape()
+
+
 def make_pin(
     name: str,
     described: str,
@@ -54,10 +76,7 @@ def make_pin(
     ends: tuple[float, float],
     planes: tuple[int, int],
     sizes: Sizes,
-    *,
-    seats: Sequence[Prism] = (),
-    stub: float = 0.0,
-    upside_down: bool = False,
+    shape: PinShape = PLAIN_PIN,
 ) -> list[Part]:
     """Make a pin with its head and its cap, or with a retaining ring at either end.
 
@@ -65,14 +84,9 @@ def make_pin(
     ----------
     ends : pair of float
         Heights of the lowest and the highest face that it holds together.
-    seats : sequence of Prism
-        Sections of the shank that are not cylindrical, in order of height.
-    stub : float
-        Length of the pin beyond its cap or upper ring.
-    upside_down : bool
-        Whether head, cap and stub are at opposite ends.
     """
     low, high = ends
+    seats, stub, upside_down = shape
     shank, top = 0.5 * sizes.pin, high + sizes.play
     steel = MATERIALS[sizes.process][1]
     mirror = low + high if upside_down else None
@@ -95,20 +109,22 @@ def make_pin(
             make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR),
             make_round_part(called, f"cap of {described}, pressed or glued on", make_prisms(cap), FASTENER_COLOUR),
         ]
-    held = sizes.ring
-    groove, bottom = 0.5 * held.groove, low - held.width
+    retaining = sizes.ring
+    groove, bottom = 0.5 * retaining.groove, low - retaining.width
     stack = [
-        (shank, 0.0, bottom - held.beyond, bottom),
+        (shank, 0.0, bottom - retaining.beyond, bottom),
         (groove, 0.0, bottom, low),
         (shank, 0.0, low, top),
-        (groove, 0.0, top, top + held.width),
-        (shank, 0.0, top + held.width, top + held.width + held.beyond + stub),
+        (groove, 0.0, top, top + retaining.width),
+        (shank, 0.0, top + retaining.width, top + retaining.width + retaining.beyond + stub),
     ]
-    below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
-    above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
+    below = [(0.5 * retaining.diameter, groove, low - retaining.thickness, low)]
+    above = [(0.5 * retaining.diameter, groove, top, top + retaining.thickness)]
     what = f"retaining ring of {described}"
     sides = ("ring_below", above if upside_down else below), ("ring_above", below if upside_down else above)
-    rings = [make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, held.standard) for side, ring in sides]
+    rings = [
+        make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, retaining.standard) for side, ring in sides
+    ]
     return [make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR, name_bar(sizes.pin)), *rings]
 
 

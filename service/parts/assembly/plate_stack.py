@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from service.parts.assembly.colours import BASE_COLOUR
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Carrier, Part, Sort
 from service.parts.assembly.sizes import Sizes
@@ -112,17 +112,14 @@ class PlateStack:
         ends = self.get_level(min(levels))[0], self.get_level(max(levels))[1]
         section = Region(make_shaft_section(place, sizes.pin, key))
         seats = [Prism(section, *self.get_level(plane)) for plane in sorted(keyed)]
-        length = STUB_LENGTH * sizes.pin if stub else 0.0
-        parts = make_pin(
-            name, described, carrier, place, ends, (min(levels), max(levels)), sizes, seats=seats, stub=length,
-            upside_down=stub < 0,
-        )  # fmt: skip
+        shape = PinShape(seats, STUB_LENGTH * sizes.pin if stub else 0.0, stub < 0)
+        parts = make_pin(name, described, carrier, place, ends, (min(levels), max(levels)), sizes, shape)
         steel, seated = MATERIALS[self.sizes.process][1], Region(make_key_section(place, sizes.pin, key))
         for plane in keyed:
             bodies = (Prism(seated, *self.get_level(plane)),)
-            told = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
+            designation = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
             parts.append(Part(f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane), steel,
-                              FASTENER_COLOUR, told))  # fmt: skip
+                              FASTENER_COLOUR, designation))  # fmt: skip
         return parts
 
     def make_fillers(

@@ -12,14 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault, name_part
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
@@ -32,6 +31,8 @@ from service.parts.cam.radial import MAX_PIN_PER_ROLLER, ROLLER_COLOUR
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, make_polygon, make_ring, widen_hull
 from service.parts.geometry.solids import Prism
 from service.parts.linkage.builder import measure_keyway_reach
+from synthesis.kinds.cam.design import BarrelCamDesign, BarrelCamMechanism
+from synthesis.kinds.cam.problem import CamProblem
 
 ON_BARREL, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
 UPRIGHT = Carrier(GROUND, "upright")
@@ -83,7 +84,7 @@ class BarrelMotion(ShaftMotion):
         return Placement(np.ones(state.shape, np.complex128), np.asarray(gone, np.complex128))
 
 
-def make_barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_barrel_parts(design: BarrelCamDesign, problem: CamProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a barrel cam.
 
     Parameters
@@ -104,7 +105,7 @@ def make_barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
 class _BarrelFitting(Fitting):
     """One request for the parts of a barrel cam."""
 
-    def __init__(self, mechanism: Any, query: PartsQuery, unit: float) -> None:
+    def __init__(self, mechanism: BarrelCamMechanism, query: PartsQuery, unit: float) -> None:
         self._mechanism = mechanism
         lift = max(mechanism.program.s) - min(mechanism.program.s)
         super().__init__(query, unit, max(2.0 * mechanism.cylinder_radius, lift) + lift)
@@ -147,7 +148,7 @@ class _BarrelFitting(Fitting):
 class _Builder:
     """Makes the parts in given sizes; lengths in millimetres."""
 
-    def __init__(self, mechanism: Any, sizes: Sizes, factor: float) -> None:
+    def __init__(self, mechanism: BarrelCamMechanism, sizes: Sizes, factor: float) -> None:
         self._sizes, self._factor = sizes, factor
         self._stack = PlateStack(sizes, ())
         self._sense = 1.0 if mechanism.rotation == "ccw" else -1.0
@@ -236,7 +237,7 @@ class _Builder:
         ends = self._uprights[0][0], self._uprights[1][1]
         parts = [
             barrel,
-            *make_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, seats=[seat], stub=STUB_LENGTH * pin),
+            *make_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, PinShape([seat], STUB_LENGTH * pin)),
         ]
         told = self._key.standard and f"{self._key.standard} x {high - low:.4g}"
         key = (Prism(Region(make_key_section(0j, pin, self._key)), low, high),)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -18,6 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.model import Carrier, InputField, Placement
+from synthesis.kinds.cam.design import ProgramTable
 
 FULL_TURN = 2.0 * math.pi
 
@@ -103,7 +103,7 @@ class Displacement:
     v: Real
 
     @classmethod
-    def from_program(cls, program: Any, unit: float) -> Displacement:
+    def from_program(cls, program: ProgramTable, unit: float) -> Displacement:
         """Build the displacement of a program's table.
 
         Parameters

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,7 +31,8 @@ from service.parts.cam.motion import CAM, FOLLOWER, CamMotion, Displacement
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, make_ring, widen_hull
 from service.parts.geometry.solids import Prism
 from service.parts.geometry.splines import Curve
-from synthesis.kinds.cam.design import CamMechanism
+from synthesis.kinds.cam.design import CamCurve, CamDesign, CamMechanism
+from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.profile import build_core_follower, find_stretches, read_points, read_table_angles
 from synthesis.mechanisms.cam import build_follower
 
@@ -70,7 +71,7 @@ class CamPlanes(NamedTuple):
         return max(plane for plane in self if plane is not None)
 
 
-def make_cam_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_cam_parts(design: CamDesign, problem: CamProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a radial cam.
 
     Parameters
@@ -218,7 +219,7 @@ class CamBuilder:
         planes = self._planes
         return min(plane for plane in (planes.cam, planes.back, planes.second) if plane is not None)
 
-    def _fit_contour(self, curve: Any, offset: float) -> Curve:
+    def _fit_contour(self, curve: CamCurve, offset: float) -> Curve:
         program = self._mechanism.program
         if list(curve.angle) == list(program.angle):
             breaks = find_stretches(program).breaks
@@ -239,7 +240,10 @@ class CamBuilder:
                 stack.make_plate(name, name.replace("_", " "), "cam", ON_CAM, Region(contour, hole), plane, colour)
                 for name, contour, plane, colour in zip(names, contours, at, CAM_COLOURS, strict=False)
             ]
-        wall = self._fit_contour(self._mechanism.outer_wall, self._sizes.clearance)
+        outer = self._mechanism.outer_wall
+        # Only a grooved cam has a back.
+        assert outer is not None
+        wall = self._fit_contour(outer, self._sizes.clearance)
         rim = self._sizes.collar + RIM_WIDTH * self._sizes.pin
         disc = Disc(0j, max(_measure_radii(wall)) + rim)
         # Milling and printing make the groove in one piece; sheets need a back and two walls.

@@ -81,8 +81,8 @@ def draw_assembly_sheet(assembly: Assembly, listed: Sequence[Item], title: str) 
         Title without characters that XML forbids.
     """
     count = f"{assembly.planes} {'plane' if assembly.planes == 1 else 'planes'}"
-    held = "one base" if assembly.sides == 1 else "two bases"
-    words = f"{len(listed)} items, {len(assembly.parts)} parts in {count} on {held}; lengths in millimetres"
+    bases = "one base" if assembly.sides == 1 else "two bases"
+    words = f"{len(listed)} items, {len(assembly.parts)} parts in {count} on {bases}; lengths in millimetres"
     if assembly.scale != 1.0:
         words += f"; {assembly.scale:g} times the design"
     side, y = _draw_side_view(assembly, TOP)

@@ -26,7 +26,7 @@ import shapely
 
 from kinematics.arrays import Complex
 from service.parts.assembly.model import SHEET_SORTS, Assembly, Part, Placement
-from service.parts.drawings.exploded import compute_lifts
+from service.parts.drawings.exploded_view import compute_lifts
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, find_arc, make_polygon
 from service.parts.geometry.solids import Prism
 from service.parts.geometry.splines import Curve

@@ -14,7 +14,8 @@ from collections.abc import Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,11 @@ from service.parts.geometry.cut_solids import BoreCut, Cut, CutBody, HalfSpaceCu
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, find_arc_middle, scale_outline
 from service.parts.geometry.solids import Body, Mesh, Prism, RevolvedBody, TaperedBody, TwistedPrism
 from service.parts.geometry.splines import Curve
+
+if TYPE_CHECKING:
+    from build123d import Edge, Face, Location, Shape, Solid, Wire
+    from lib3mf.Lib3MF import Wrapper
+    from OCP.TopoDS import TopoDS_Edge
 
 DEFLECTION, MAX_FACET_ANGLE = 0.02, 0.1
 """Maximum distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
@@ -45,9 +51,6 @@ CREATION_TIME = "2000-01-01T00:00:00"
 
 AP242_NUMBER, SCHEMA_NAME = 5, b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
 """Number of the schema in the library, and its name in a file."""
-
-Solid = Any
-"""A shape of build123d, which only this module uses."""
 
 
 def make_solid(part: Part) -> Solid:
@@ -183,7 +186,7 @@ def write_3mf(mesh: Surface, name: str) -> bytes:
 
 
 @cache
-def _load_lib3mf() -> tuple[Any, Any]:
+def _load_lib3mf() -> tuple[Wrapper, ModuleType]:
     """Load the library once; return it and its names."""
     from lib3mf import Lib3MF
 
@@ -211,7 +214,7 @@ def lay_flat(shape: Solid, part: Part) -> Solid:
     return _move_solid(turned, b3d.Location((-low.X, -low.Y, -low.Z)))
 
 
-def _move_solid(shape: Solid, place: Any) -> Solid:
+def _move_solid(shape: Solid, place: Location) -> Solid:
     """Return a solid in another place with the same faces; build123d's own move would copy it with its whole tree."""
     import build123d as b3d
 
@@ -220,7 +223,7 @@ def _move_solid(shape: Solid, place: Any) -> Solid:
     return moved
 
 
-def _locate_frame(frame: Frame) -> Any:
+def _locate_frame(frame: Frame) -> Location:
     """Return the location of a frame at the first input."""
     import build123d as b3d
 
@@ -228,7 +231,7 @@ def _locate_frame(frame: Frame) -> Any:
     return b3d.Location(b3d.Plane(tuple(origin), x_dir=tuple(axes[:, 0]), z_dir=tuple(axes[:, 2])))
 
 
-def _make_body(body: Body) -> Any:
+def _make_body(body: Body) -> Shape:
     """Return a body at its height."""
     import build123d as b3d
 
@@ -255,7 +258,7 @@ def _make_body(body: Body) -> Any:
     return _build_mesh_solid(body)
 
 
-def _make_tapered(body: TaperedBody) -> Any:
+def _make_tapered(body: TaperedBody) -> Solid:
     """Build one pitch of the teeth, copy its faces around the axis, and close the ends with discs and a tube at the
     bore.
 
@@ -293,7 +296,7 @@ def _make_tapered(body: TaperedBody) -> Any:
     return b3d.Solid(closed).clean().moved(b3d.Location((body.centre.real, body.centre.imag, 0.0)))
 
 
-def _make_pitch_faces(body: TaperedBody) -> list[Any]:
+def _make_pitch_faces(body: TaperedBody) -> list[Face]:
     """Return the faces of one pitch about the origin, without those of its ends: a sector of the body of revolution
     intersected with a sector of the cone to the apex."""
     import build123d as b3d
@@ -318,7 +321,7 @@ def _make_pitch_faces(body: TaperedBody) -> list[Any]:
     (whole,) = turned.intersect(b3d.Solid.make_loft(wires, ruled=True)).solids()
     ends = [np.exp(1j * (np.radians(_find_pitch_start(body)) + k * 2.0 * np.pi / body.teeth)) for k in (0, 1)]
 
-    def cut(face: Any) -> bool:
+    def cut(face: Face) -> bool:
         """Return whether it is normal to the axis, or lies in one of the two planes that bound the pitch."""
         if not face.is_planar:
             return False
@@ -339,7 +342,7 @@ def _find_pitch_start(body: TaperedBody) -> float:
     return float(np.degrees(np.angle(outline.corners[0] - body.centre)))
 
 
-def _make_cut_body(body: CutBody) -> Any:
+def _make_cut_body(body: CutBody) -> Solid:
     """Revolve the half section, and subtract all tools of the cuts at once."""
     import build123d as b3d
 
@@ -349,7 +352,7 @@ def _make_cut_body(body: CutBody) -> Any:
     return made
 
 
-def _make_tool(cut: Cut, far: float) -> Any:
+def _make_tool(cut: Cut, far: float) -> Shape:
     """Return the solid that a cut removes, up to a distance from the origin."""
     import build123d as b3d
 
@@ -373,7 +376,7 @@ def _make_tool(cut: Cut, far: float) -> Any:
     return b3d.Solid.make_cone(0.0, far * float(np.tan(cut.angle)), far, plane)
 
 
-def _build_mesh_solid(body: Mesh) -> Any:
+def _build_mesh_solid(body: Mesh) -> Solid:
     """Return the solid enclosed by the triangles of a mesh, with shared edges."""
     import build123d as b3d
     from OCP.BRep import BRep_Builder
@@ -383,7 +386,7 @@ def _build_mesh_solid(body: Mesh) -> Any:
 
     builder = BRep_Builder()
     corners = [BRepBuilderAPI_MakeVertex(gp_Pnt(*place)).Vertex() for place in body.corners.tolist()]
-    edges: dict[tuple[int, int], Any] = {}
+    edges: dict[tuple[int, int], TopoDS_Edge] = {}
     shell, whole = TopoDS_Shell(), TopoDS_Solid()
     builder.MakeShell(shell)
     for three in body.triangles.tolist():
@@ -404,19 +407,19 @@ def _build_mesh_solid(body: Mesh) -> Any:
     return b3d.Solid(whole)
 
 
-def _shift_up(height: float) -> Any:
+def _shift_up(height: float) -> Location:
     import build123d as b3d
 
     return b3d.Location((0.0, 0.0, height))
 
 
-def _make_face(region: Region) -> Any:
+def _make_face(region: Region) -> Face:
     import build123d as b3d
 
     return b3d.Face(_make_wire(region.outer), [_make_wire(hole) for hole in region.holes])
 
 
-def _make_wire(outline: Outline) -> Any:
+def _make_wire(outline: Outline) -> Wire:
     import build123d as b3d
 
     if isinstance(outline, Disc):
@@ -435,7 +438,7 @@ def _make_wire(outline: Outline) -> Any:
     return b3d.Wire(edges)
 
 
-def _make_spline(outline: Curve) -> Any:
+def _make_spline(outline: Curve) -> Edge:
     """Return a smooth outline as its B-spline."""
     import build123d as b3d
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 from pydantic import BaseModel
 
@@ -19,8 +18,8 @@ from service.parts.assembly.sizes import (
     Process,
     ViewQuery,
 )
+from service.parts.drawings.depth_buffer import draw_rendered_sheet
 from service.parts.drawings.isometric import draw_isometric_sheet
-from service.parts.drawings.rendered import draw_rendered_sheet
 from service.parts.export import cad
 from service.parts.export.viewer_model import list_files, make_view
 from service.parts.export.zip_package import write_item_file, write_package
@@ -28,6 +27,7 @@ from service.parts.registry import make_parts
 from service.render import make_heading
 from service.render.page.svg import clean_text
 from service.requests import load_stored_problem
+from synthesis.model.json_object import JsonObject
 from synthesis.registry import KINDS
 
 MAX_CACHED = 4
@@ -42,10 +42,10 @@ class PartsRequest(BaseModel):
     label: str | None
     result: str
     number: int
-    query: dict[str, Any]
+    query: JsonObject
 
 
-def make_file(order: dict[str, Any], file: File) -> bytes | FileRefusal:
+def make_file(order: JsonObject, file: File) -> bytes | FileRefusal:
     """Make a file of a design; return its bytes, or the reason why it does not exist.
 
     Parameters
@@ -54,9 +54,9 @@ def make_file(order: dict[str, Any], file: File) -> bytes | FileRefusal:
         Fields of an :class:`PartsRequest` with the query of the file.
     file : {"zip", "step", "glb", "json", "svg"}
     """
-    asked = PartsRequest.model_validate(order)
+    request = PartsRequest.model_validate(order)
     try:
-        return _make_file(asked, file)
+        return _make_file(request, file)
     except NotMade as error:
         return FileRefusal(str(error), error.path)
 
@@ -78,7 +78,7 @@ def _make_file(order: PartsRequest, file: File) -> bytes:
     return cad.write_step(solids, "assembly") if file == "step" else cad.write_glb(solids, "assembly")
 
 
-def make_item_file(order: dict[str, Any], name: str, form: PartFile) -> bytes | FileRefusal:
+def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | FileRefusal:
     """Make a file of one item of a design.
 
     Parameters
@@ -89,9 +89,9 @@ def make_item_file(order: dict[str, Any], name: str, form: PartFile) -> bytes | 
         Name of the item.
     form : {"dxf", "stl", "step", "3mf"}
     """
-    asked = PartsRequest.model_validate(order)
+    request = PartsRequest.model_validate(order)
     try:
-        listed = list_items(_get_assembly(asked))
+        listed = list_items(_get_assembly(request))
     except NotMade as error:
         return FileRefusal(str(error), error.path)
     item = next((item for item in listed if item.name == name), None)
@@ -101,7 +101,7 @@ def make_item_file(order: dict[str, Any], name: str, form: PartFile) -> bytes | 
         )
     if form not in list_files(item.part):
         return FileRefusal(f"{name} has no {form} file.", "", known=False)
-    return write_item_file(item, form, _make_title(asked))
+    return write_item_file(item, form, _make_title(request))
 
 
 def _make_title(order: PartsRequest) -> str:
@@ -112,7 +112,7 @@ def _get_process(order: PartsRequest) -> Process:
     return PartsQuery.model_validate(_select_size_options(order)).process
 
 
-def _select_size_options(order: PartsRequest) -> dict[str, Any]:
+def _select_size_options(order: PartsRequest) -> JsonObject:
     """Return the options of the parts themselves, without those of their display."""
     return {name: value for name, value in order.query.items() if name in PartsQuery.model_fields}
 
@@ -124,7 +124,9 @@ def _get_assembly(order: PartsRequest) -> Assembly:
 
 
 @lru_cache(maxsize=MAX_CACHED)
-def _make_assembly(kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, Any], ...]) -> Assembly:
+def _make_assembly(
+    kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, object], ...]
+) -> Assembly:
     design = KINDS[kind].result.model_validate_json(result).designs[number]
     return make_parts(design, load_stored_problem(kind, problem), PartsQuery.model_validate(dict(query)))
 
@@ -137,5 +139,5 @@ def _choose_input(assembly: Assembly, query: AssemblyQuery) -> float:
     other: InputField = "input_angle" if name == "input_place" else "input_place"
     if getattr(query, other) is not None:
         raise NotMade(f"The input of this mechanism is given by `{name}`.", f"/query/{other}")
-    stated = getattr(query, name)
-    return motion.reference if stated is None else motion.convert_input(stated, assembly.unit)
+    input_value = getattr(query, name)
+    return motion.reference if input_value is None else motion.convert_input(input_value, assembly.unit)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from service.parts.assembly.items import list_items
 from service.parts.assembly.model import SHEET_SORTS, Assembly, Carrier, Frame, Motion, Part
 from service.parts.assembly.sizes import NotMade, PartFile
-from service.parts.drawings.exploded import compute_lifts
+from service.parts.drawings.exploded_view import compute_lifts
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_schema import (
     AssemblyView,
@@ -108,11 +107,11 @@ def _is_endless(motion: Motion) -> bool:
     """Return whether the motion continues without limit and without repetition."""
     beyond = math.degrees(motion.high) + ENDLESS_TEST_DEGREES
     try:
-        stated = motion.convert_input(beyond, 1.0)
+        converted = motion.convert_input(beyond, 1.0)
     except NotMade:
         return False
     # Endless motions accept any angle unchanged; cyclic ones reduce it.
-    return not motion.closed and math.isclose(stated, math.radians(beyond))
+    return not motion.closed and math.isclose(converted, math.radians(beyond))
 
 
 def _make_carrier_views(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[CarrierView]:
@@ -191,18 +190,15 @@ def _make_shape(body: Body) -> Shape:
     if isinstance(body, TaperedBody):
         body = body.mesh
     if isinstance(body, Mesh):
-        corners: Any = body.corners.tolist()
+        corners = [(float(x), float(y), float(z)) for x, y, z in body.corners]
         return MeshShape(corners=corners, triangles=body.triangles.tolist())
     region = body.section if isinstance(body, TwistedPrism) else body.region
-    upright: dict[str, Any] = {
-        "low": body.low,
-        "high": body.high,
-        "outer": _make_edge(region.outer),
-        "holes": [_make_edge(hole) for hole in region.holes],
-    }
+    low, high = body.low, body.high
+    outer, holes = _make_edge(region.outer), [_make_edge(hole) for hole in region.holes]
     if isinstance(body, TwistedPrism):
-        return TwistedShape(centre=_to_pair(body.centre), twist=math.degrees(body.twist), **upright)
-    return PrismShape(**upright)
+        centre, twist = _to_pair(body.centre), math.degrees(body.twist)
+        return TwistedShape(low=low, high=high, outer=outer, holes=holes, centre=centre, twist=twist)
+    return PrismShape(low=low, high=high, outer=outer, holes=holes)
 
 
 def _make_edge(outline: Outline) -> CircleEdge | CornersEdge:

@@ -6,13 +6,17 @@ import os
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable
 from importlib import import_module
-from typing import Any
+from typing import TypeVar
 
 from service.jobs.processes.limits import limit_memory, restrict_process
-from service.jobs.processes.request_pool import Limits, PoolMetrics, RequestPool, hash_call
+from service.jobs.processes.request_pool import Limits, PoolMetrics, ProcessStart, RequestPool, hash_call
 from service.jobs.workers.worker import LIBRARIES_MB
 from service.observability.logs import Format
+from service.parts.assembly.sizes import File, FileRefusal, PartFile
 from service.parts.export.cad_available import is_installed
+from synthesis.model.json_object import JsonObject
+
+T = TypeVar("T")
 
 MAX_PARTS_S = 60.0
 """Maximum time for making parts; a job's limit also applies."""
@@ -46,12 +50,14 @@ class Workshop:
         metrics: PoolMetrics | None = None,
     ) -> None:
         settings = os.getpid(), log_level, log_format, memory_mb
-        self.pool = RequestPool("parts", _prepare, settings, Limits(min(timeout_s, MAX_PARTS_S)), metrics=metrics)
+        self.pool = RequestPool(
+            "parts", ProcessStart(_prepare, settings), Limits(min(timeout_s, MAX_PARTS_S)), metrics=metrics
+        )
         self._kept: OrderedDict[bytes, bytes] = OrderedDict()
 
     async def run_cached(
-        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., Any], *args: Any
-    ) -> Any:
+        self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., T], *args: object
+    ) -> T | bytes:
         """Return the result of a function of a module, or the cached file of an identical call; only files are cached.
 
         Raises
@@ -85,15 +91,15 @@ def _prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int
     limit_memory(memory_mb + LIBRARIES_MB + CAD_MB)
 
 
-def make_file(*args: Any) -> Any:
+def make_file(order: JsonObject, file: File) -> bytes | FileRefusal:
     """Call :func:`service.parts.export.requests.make_file`, which is imported only in the worker process."""
     from service.parts.export import requests
 
-    return requests.make_file(*args)
+    return requests.make_file(order, file)
 
 
-def make_item_file(*args: Any) -> Any:
+def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | FileRefusal:
     """Call :func:`service.parts.export.requests.make_item_file`, which is imported only in the worker process."""
     from service.parts.export import requests
 
-    return requests.make_item_file(*args)
+    return requests.make_item_file(order, name, form)

@@ -27,9 +27,9 @@ from service.parts.assembly.model import SHEET_SORTS, Assembly
 from service.parts.assembly.sizes import PartFile, Process
 from service.parts.drawings.assembly_sheet import draw_assembly_sheet
 from service.parts.drawings.assembly_sheet_crossed import draw_crossing_sheet
+from service.parts.drawings.depth_buffer import draw_rendered_sheet
 from service.parts.drawings.dxf import write_cutting_dxf
 from service.parts.drawings.isometric import draw_isometric_sheet
-from service.parts.drawings.rendered import draw_rendered_sheet
 from service.parts.export import cad
 from service.parts.export.cad_available import is_installed
 from service.parts.export.viewer_model import list_files
@@ -145,8 +145,8 @@ def _write_read_me(
 def _list_instructions(assembly: Assembly, plates: dict[int, list[str]]) -> list[str]:
     """Return the assembly instructions."""
     if not assembly.parallel:
-        told = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
-        return ["Assemble each shaft, then set the shafts into the base:", *told,
+        plate_lines = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
+        return ["Assemble each shaft, then set the shafts into the base:", *plate_lines,
                 "Spacers fill the gaps on the shafts; assembly.svg shows their positions."]  # fmt: skip
     return [
         f"Assemble from below{_describe_thickness(assembly)}:",

@@ -249,16 +249,16 @@ class _Pair:
         )  # fmt: skip
 
     def _list_notes(self) -> tuple[str, ...]:
-        told = [
+        notes = [
             f"Shaft angle {math.degrees(self.stage.shaft_angle):.6g}°; cone distance {self.blanks[0].distance:.6g} mm, "
             f"face width {self.blanks[0].face_width:.6g} mm; module {self.stage.module:.6g} mm at the large end."
         ]
         for number, (role, blank) in enumerate(zip(("Driver", "Driven gear"), self.blanks, strict=True)):
             tip, root = (math.degrees(angle) for angle in blank.cones)
-            told.append(
+            notes.append(
                 f"{role}: {blank.teeth} teeth, pitch cone {math.degrees(blank.cone):.4f}°, tip cone {tip:.4f}°, root "
                 f"cone {root:.4f}°, outside diameter {2.0 * blank.corners[2].real:.6g} mm; mounting distance from the "
                 f"apex to the end of the hub {self._measure_hub(number)[2]:.6g} mm."
             )
-        told.append("Glue or wedge the tabs of the bearing plates into the slots of the base.")
-        return tuple(told)
+        notes.append("Glue or wedge the tabs of the bearing plates into the slots of the base.")
+        return tuple(notes)

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.colours import BASE_COLOUR
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PLAIN_PIN, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Carrier, Part, simplify_name
 from service.parts.assembly.sizes import Sizes
@@ -126,8 +126,8 @@ class Housing:
 
     def _make_plate(self, name: str, level: int, posts: Iterable[complex]) -> Part:
         radius = 0.5 * self.sizes.hole
-        held = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
-        cuts: list[Outline] = [Disc(place, radius) for place in (*held, *posts)]
+        axes = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
+        cuts: list[Outline] = [Disc(place, radius) for place in (*axes, *posts)]
         # A shaft that is keyed to a plate is fixed to the housing.
         cuts += [
             make_bore(shaft.axis, self.sizes.pin, find_key(self.sizes.pin), self.sizes.clearance)
@@ -152,14 +152,14 @@ class Housing:
         sizes, name = self.sizes, simplify_name(shaft.name)
         seated = [
             make_seat(
-                shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards
+                shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], (level,), sizes, shaft.towards
             )
             for level in sorted(shaft.keyed)
         ]
         seated += [
             make_seat(
                 shaft.name, f"{low}_{high}", shaft.carrier, shaft.axis,
-                Level(self.levels[low].low, self.levels[high].high), low, sizes, shaft.towards, top=high,
+                Level(self.levels[low].low, self.levels[high].high), (low, high), sizes, shaft.towards,
             )
             for low, high in shaft.sliding
         ]  # fmt: skip
@@ -176,7 +176,7 @@ class Housing:
         down = shaft.reach[1] < self.top or shaft.below
         return [
             *self._stack_parts(
-                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned
+                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, PinShape(seats, stub, down), spanned
             ),
             *keys,
         ]
@@ -189,16 +189,11 @@ class Housing:
         place: complex,
         reach: tuple[int, int],
         levels: Sequence[int],
-        seats: Sequence[Prism] = (),
-        stub: float = 0.0,
-        upside_down: bool = False,
+        shape: PinShape = PLAIN_PIN,
         spanned: Sequence[int] = (),
     ) -> list[Part]:
         ends = self.levels[reach[0]].low, self.levels[reach[1]].high
-        parts = make_pin(
-            name, described, carrier, place, ends, reach, self.sizes,
-            seats=seats, stub=stub, upside_down=upside_down,
-        )  # fmt: skip
+        parts = make_pin(name, described, carrier, place, ends, reach, self.sizes, shape)
         for lower, upper in pairwise(levels):
             if lower in spanned:
                 continue
@@ -208,26 +203,26 @@ class Housing:
 
 
 def make_seat(
-    shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, plane: int, sizes: Sizes,
-    towards: complex = 1.0 + 0.0j, *, top: int | None = None,
+    shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, planes: Sequence[int], sizes: Sizes,
+    towards: complex = 1.0 + 0.0j,
 ) -> tuple[Prism, Part]:  # fmt: skip
     """Return the section of a shaft at a wheel, and the key there.
 
     Parameters
     ----------
-    top : int or None
-        Highest plane of a feather key, along which wheels slide from ``plane``.
+    planes : sequence of int
+        Plane of the key; lowest and highest plane of a feather key, along which wheels slide.
     """
     # Keys are shorter than their wheel, so that they do not rub on neighbours.
     key, low, high = find_key(sizes.pin), level.low + sizes.play, level.high - sizes.play
     part = Part(
         name=f"key_{simplify_name(shaft)}_{number}",
-        described=f"{'key' if top is None else 'feather key'} of the {shaft}",
+        described=f"{'key' if len(planes) == 1 else 'feather key'} of the {shaft}",
         sort="key",
         carrier=carrier,
         bodies=(Prism(Region(make_key_section(axis, sizes.pin, key, towards)), low, high),),
         along=towards,
-        planes=(plane, plane if top is None else top),
+        planes=(planes[0], planes[-1]),
         material=MATERIALS[sizes.process][1],
         colour=FASTENER_COLOUR,
         standard=f"{key.standard} x {high - low:g}" if key.standard else "",

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from kinematics.errors import DimensionError
 from service.parts.assembly.model import Assembly, Carrier, Part
@@ -21,6 +20,8 @@ from service.parts.gears.sizing import GearSizing
 from service.parts.gears.stand import Clearances, Reach, Wheel, find_axes, find_reaches
 from service.parts.gears.wheels import check_assembly, make_wheel_parts
 from service.render.gears.gearbox_layout import BoxGear, arrange_layshaft
+from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 
 INPUT_SHAFT, LAYSHAFT_SHAFT, MAIN_SHAFT = 0, 1, 2
 SHAFT_NAMES = ("input shaft", "layshaft", "main shaft", "axle of the idler")
@@ -28,7 +29,7 @@ KEYED_PAIR = "GEAR_1"
 """The pair whose gear is keyed to the main shaft."""
 
 
-def make_layshaft_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_layshaft_parts(design: LayshaftDesign, problem: LayshaftProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a layshaft gearbox.
 
     Parameters

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
@@ -20,6 +19,8 @@ from service.parts.gears.stand import Arrangement, Clearances, Wheel, find_arran
 from service.parts.gears.wheels import check_assembly, compute_rim_radius, make_wheel_parts
 from service.parts.gears.worm_set import make_worm_parts
 from service.render.gears.train_layout import place_in_line
+from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import build_train
 from synthesis.model.gears.answer import MeshGeometry
 
@@ -27,7 +28,7 @@ MAX_TURNS = 400
 """Maximum number of input turns in the interference check."""
 
 
-def make_train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_train_parts(design: GearTrainDesign, problem: GearTrainProblem, query: PartsQuery) -> Assembly:
     """Make the parts of an ordinary train.
 
     Parameters
@@ -243,9 +244,9 @@ class _OrdinaryTask:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MAX_TURNS))
 
     def _list_notes(self, stand: Arrangement) -> tuple[str, ...]:
-        told = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
+        notes = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
         for number, reach in enumerate(stand.reaches):
             if reach != (0, self.highest + 1):
                 plate = "lower" if reach[0] == 0 else "upper"
-                told.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
-        return tuple(told)
+                notes.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
+        return tuple(notes)

@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -29,12 +28,14 @@ from service.parts.gears.wheels import JOINT_WALL_RATIO, check_assembly, compute
 from service.parts.geometry.regions import Disc, Outline, Region, widen_hull
 from service.parts.geometry.solids import Prism
 from service.render.gears.planetary_layout import PlanetaryGear, place_planetary_gears
+from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMechanism
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
 POST_COUNT = 4
 """Number of posts of a train whose ring is held by them."""
 
 
-def make_planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a planetary train.
 
     Parameters
@@ -106,7 +107,7 @@ def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement
 class _PlanetaryTask:
     """A train in millimetres, its build, and the sizes of its shafts and plates."""
 
-    mechanism: Any
+    mechanism: PlanetaryMechanism
     arrangement: Arrangement
     speeds: dict[str, float]
     build: Build
@@ -217,12 +218,12 @@ class _PlanetaryTask:
 
     def _place_posts(self, wheels: Sequence[Wheel]) -> tuple[complex, ...]:
         """Return the posts that hold a ring, outside all rotating parts."""
-        held = [wheel for wheel in wheels if wheel.gear.internal and wheel.web is None]
-        if not held:
+        rings = [wheel for wheel in wheels if wheel.gear.internal and wheel.web is None]
+        if not rings:
             return ()
         room = JOINT_WALL_RATIO * MIN_WALL_PER_PIN * self.sizes.pin + 0.5 * self.sizes.hole
-        away = max(wheel.gear.root_radius for wheel in held) + room
-        moving = [abs(wheel.centre) + wheel.outer for wheel in wheels if wheel not in held]
+        away = max(wheel.gear.root_radius for wheel in rings) + room
+        moving = [abs(wheel.centre) + wheel.outer for wheel in wheels if wheel not in rings]
         moving += [abs(pin) + 0.5 * self.sizes.width for pin in self._find_pins().values()]
         # Posts stay outside everything that rotates.
         away = max(away, max(moving) + 0.5 * self.sizes.collar + self.sizes.min_gap)
@@ -244,12 +245,12 @@ class _PlanetaryTask:
             body = next(body for body, access in build.access.items() if access == side)
             # Members without a shaft run freely on this one.
             loose = [level for one, level in hubs.items() if build.access[one] == "loose" and low <= level <= high]
-            held = body == self.mechanism.fixed
+            is_fixed = body == self.mechanism.fixed
             plate = 0 if side == "low" else top
             found.append(
                 Shaft(
                     f"shaft of the {body.replace('_', ' ')}", self.get_carrier(body), 0j, (low, high),
-                    (hubs[body], plate) if held else (hubs[body],), tuple(loose),
+                    (hubs[body], plate) if is_fixed else (hubs[body],), tuple(loose),
                     ends=body in (self.mechanism.input, self.mechanism.output),
                 )
             )  # fmt: skip
@@ -312,18 +313,18 @@ class _PlanetaryTask:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), 400))
 
     def _list_notes(self) -> tuple[str, ...]:
-        told = ["Gears are keyed to their shafts; planets turn on their pins, stepped planets together with them."]
+        notes = ["Gears are keyed to their shafts; planets turn on their pins, stepped planets together with them."]
         fixed = f"The {self.mechanism.fixed.replace('_', ' ')} is fixed"
         if self.build.access[self.mechanism.fixed] == "held":
             what = "is the lower plate" if self.mechanism.fixed == self.carrier else "is held by the posts"
-            told.append(f"{fixed}: it {what}.")
+            notes.append(f"{fixed}: it {what}.")
         else:
-            told.append(f"{fixed} by a key between its shaft and the plate.")
+            notes.append(f"{fixed} by a key between its shaft and the plate.")
         for role, body in (("input", self.mechanism.input), ("output", self.mechanism.output)):
             if self.build.access[body] == "loose":
                 own = f"The {body.replace('_', ' ')} is the {role}"
-                told.append(f"{own}, and has no shaft of its own: connect to its rim.")
-        return tuple(told)
+                notes.append(f"{own}, and has no shaft of its own: connect to its rim.")
+        return tuple(notes)
 
 
 def _is_hub_uncovered(pins: Sequence[complex], sizes: Sizes) -> bool:

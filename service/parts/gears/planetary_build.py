@@ -63,15 +63,15 @@ def choose_build(arrangement: Arrangement, roles: tuple[str, str, str]) -> Build
 
 def _enumerate_builds(arrangement: Arrangement, roles: tuple[str, str, str]) -> Iterator[Build]:
     """Yield all builds, those in the order of the arrangement first."""
-    held = roles[2]
+    fixed = roles[2]
     (carrier,) = set(arrangement.carriers.values())
     central = [gear for gear in arrangement.gears if gear.body not in arrangement.carriers]
     rings = [gear for gear in central if gear.internal]
-    turning = [ring.body for ring in rings if ring.body != held]
+    turning = [ring.body for ring in rings if ring.body != fixed]
     planes = sorted({plane for gear in arrangement.gears for plane in gear.planes})
     # The stack of planes may be built upside down.
     for order in (planes, planes[::-1]):
-        for plate in (None,) if carrier == held else PLATE_SIDES:
+        for plate in (None,) if carrier == fixed else PLATE_SIDES:
             for sides in product(("above", "below"), repeat=len(turning)):
                 below = [body for body, side in zip(turning, sides, strict=True) if side == "below"]
                 above = [body for body, side in zip(turning, sides, strict=True) if side == "above"]
@@ -93,8 +93,8 @@ def _enumerate_builds(arrangement: Arrangement, roles: tuple[str, str, str]) -> 
                 hubs = {gear.body: webs.get(gear.body, levels[gear.planes[0]]) for gear in central}
                 if at is not None:
                     hubs[carrier] = at
-                if held in {ring.body for ring in rings}:
-                    del hubs[held]
+                if fixed in {ring.body for ring in rings}:
+                    del hubs[fixed]
                 yield from _enumerate_connections(hubs, roles, levels, webs, at, highest, [*arrangement.members])
 
 

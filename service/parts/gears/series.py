@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from service.parts.assembly.model import Assembly
 from service.parts.assembly.sizes import NotMade, PartsQuery
 from service.parts.gears.ordinary import OrdinaryParts, find_backlash
-from synthesis.kinds.gear_train.design import GearTrainMechanism
+from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainMetrics
 from synthesis.kinds.gear_train.verification import build_train
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 
-def make_series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_series_parts(design: TrainSeriesDesign, problem: TrainSeriesProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a series of ordinary trains.
 
     Parameters
@@ -27,8 +28,8 @@ def make_series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     NotMade
         A train is planetary or reverted, or the parts do not fit.
     """
-    units = design.mechanism.units
-    if not all(isinstance(unit, GearTrainMechanism) for unit in units):
+    units = [unit for unit in design.mechanism.units if isinstance(unit, GearTrainMechanism)]
+    if len(units) < len(design.mechanism.units):
         raise NotMade(
             "Parts are only available for series of ordinary trains; this one has a planetary train, whose shafts end "
             "at its carrier and its ring. Request the parts of each train separately."
@@ -41,9 +42,10 @@ def make_series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     if len({unit.pressure_angle for unit in units}) > 1:
         raise NotMade("Parts are only available for trains with one pressure angle.")
     stages = [stage for unit in units for stage in build_train(unit).stages]
+    measured = [metrics for metrics in design.metrics.units if isinstance(metrics, GearTrainMetrics)]
     plays = [
         play
-        for unit, metrics in zip(units, design.metrics.units, strict=True)
+        for unit, metrics in zip(units, measured, strict=True)
         for play in find_backlash(build_train(unit).stages, metrics.meshes)
     ]
     widths = [stage.face_width for unit in units for stage in unit.stages]

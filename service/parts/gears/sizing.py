@@ -88,10 +88,10 @@ class GearSizing:
         answered : float or None
             Face width of the answer in the unit of the problem, at the original size.
         """
-        stated = self.query.face_width
-        if stated is None:
+        requested = self.query.face_width
+        if requested is None:
             return DEFAULT_FACE_WIDTH * module if answered is None else answered * self.factor
-        width = stated * self.unit
+        width = requested * self.unit
         least, most = MIN_FACE_WIDTH * module, MAX_FACE_WIDTH * module
         if not least <= width <= most:
             raise NotMade(
@@ -147,8 +147,8 @@ class GearSizing:
             yield sizes
 
     def _describe_obstruction(self, room: float, passed: str) -> str:
-        told = f"{room / self.unit:.4g} {self.words}"
-        return f"The {passed} at {told} from its axis, too close for a shaft with a spacer"
+        distance = f"{room / self.unit:.4g} {self.words}"
+        return f"The {passed} at {distance} from its axis, too close for a shaft with a spacer"
 
     def _make_requested(self, bore: float, smallest: Gear) -> Sizes:
         unit = self.unit

@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
@@ -31,12 +30,14 @@ from service.parts.gears.wheels import check_assembly, make_wheel_parts
 from service.parts.geometry.regions import Disc, Region
 from service.parts.geometry.solids import Prism
 from service.render.gears.placement import align_mate
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
 
 Teeth = tuple[tuple[tuple[int, int], ...], ...]
 """Driver and driven teeth by stage and pair."""
 
 
-def make_sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_sliding_parts(design: GearboxDesign, problem: GearboxProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a gearbox in the requested speed.
 
     Parameters
@@ -60,10 +61,10 @@ def make_sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly
     module, angle = sizing.factor * design.mechanism.module, math.radians(design.mechanism.pressure_angle)
     gears = {count: Gear(count, module, angle) for pairs in teeth for pair in pairs for count in pair}
     sizing.check_size(module * sum(sum(pairs[0]) for pairs in teeth))
-    told = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min at the output"
+    description = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min at the output"
     smallest = min(gears.values(), key=lambda gear: gear.root_radius)
     for sizes in sizing.list_sizes(smallest):
-        task = _SlidingTask(teeth, gears, tuple(speeds[number - 1].engaged), told, sizes, sizing)
+        task = _SlidingTask(teeth, gears, tuple(speeds[number - 1].engaged), description, sizes, sizing)
         stand = task.find_stand()
         if stand is not None:
             try:
@@ -203,8 +204,8 @@ class _SlidingTask:
             )  # fmt: skip
             return [made[0], between, made[1]]
         bodies = (*made[0].bodies, hub, *made[1].bodies)
-        told = f"cluster of {words}, drivers, {lower.gear.teeth:g} and {upper.gear.teeth:g} teeth"
-        return [Part(f"cluster_{name}", told, "gear", carrier, bodies, towards, planes, material, colour)]
+        description = f"cluster of {words}, drivers, {lower.gear.teeth:g} and {upper.gear.teeth:g} teeth"
+        return [Part(f"cluster_{name}", description, "gear", carrier, bodies, towards, planes, material, colour)]
 
     def _make_shaft(self, number: int, stand: Arrangement, towards: complex) -> Shaft:
         last = len(self.teeth)
@@ -229,10 +230,10 @@ class _SlidingTask:
             for stage, (teeth, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True))
         ]
         ratio = float(1 / abs(self.speeds[-1]))
-        told = [f"{self.told}: {'; '.join(pairs)}; input over output {ratio:.6g}."]
+        notes = [f"{self.told}: {'; '.join(pairs)}; input over output {ratio:.6g}."]
         if any(cluster.slides for cluster in self.clusters):
             step = levels[2].low - levels[1].low
-            told += [
+            notes += [
                 "All speeds have the same parts in different positions: request another speed to see them.",
                 f"A cluster of two gears has three positions, {step:.4g} mm from each other along its feather key: "
                 "lower gear "
@@ -246,20 +247,20 @@ class _SlidingTask:
             ]
             doubles = any(cluster.slides and len(cluster.pairs) > 1 for cluster in self.clusters)
             if doubles and self.sizes.process == "laser":
-                told.append(
+                notes.append(
                     "The gears of a two-gear cluster and the hub between them are bonded or screwed together; each "
                     "gear is keyed, so that the joint transmits no torque. A fork fits between the gears."
                 )
             elif doubles:
-                told.append(
+                notes.append(
                     "A two-gear cluster is one piece with the hub between them, around which a fork fits; its "
                     "DXF file contains only the outline of the larger gear."
                 )
         for shaft in shafts:
             if shaft.reach != (0, self.highest + 1):
                 plate = "lower" if shaft.reach[0] == 0 else "upper"
-                told.append(f"The {shaft.name} is held only by the {plate} plate.")
-        return tuple(told)
+                notes.append(f"The {shaft.name} is held only by the {plate} plate.")
+        return tuple(notes)
 
 
 def _make_carrier(shaft: int) -> Carrier:

@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.colours import BASE_COLOUR
-from service.parts.assembly.fasteners import MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.model import Carrier, Frame, Part, simplify_name
 from service.parts.assembly.sizes import Sizes
 from service.parts.gears.housing import STUB_LENGTH, Level, make_seat
@@ -222,10 +222,10 @@ class UprightHousing:
 
     def _make_shaft(self, axle: Axle) -> list[Part]:
         name, sizes, planes = simplify_name(axle.name), self._get_sizes(axle), (axle.plane, axle.plane)
-        keyed, key = make_seat(axle.name, "1", axle.carrier, 0j, axle.levels[axle.wheel], axle.plane, sizes)
+        keyed, key = make_seat(axle.name, "1", axle.carrier, 0j, axle.levels[axle.wheel], (axle.plane,), sizes)
         parts = make_pin(
             name, axle.name, axle.carrier, 0j, (axle.levels[0].low, axle.levels[-1].high), planes, sizes,
-            seats=[keyed], stub=STUB_LENGTH * sizes.pin, upside_down=axle.stub_below,
+            PinShape([keyed], STUB_LENGTH * sizes.pin, axle.stub_below),
         )  # fmt: skip
         parts.append(key)
         for number, (lower, upper) in enumerate(pairwise(axle.levels), 1):

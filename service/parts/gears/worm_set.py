@@ -58,10 +58,10 @@ def make_worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | N
     refused = None
     for sizes in sizing.list_sizes(smallest):
         play = 0.5 * max(sizes.clearance - sizing.factor * backlash, 0.0)
-        stated = sizing.query.face_width is not None or face_width is not None
+        is_width_given = sizing.query.face_width is not None or face_width is not None
         wide = sizing.choose_face_width(stage.module, face_width)
         # Wide worm gears do not touch the worm at their ends.
-        if not stated:
+        if not is_width_given:
             wide = min(DEFAULT_FACE_WIDTH, MAX_FACE_SHARE * stage.quotient) * stage.module
         try:
             return _WormSet(stage, drive, wide, play, sizes, sizing).build_assembly()

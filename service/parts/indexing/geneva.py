@@ -14,12 +14,12 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.indexing.drag_link import CrankCourse
+from kinematics.indexing.locking import Disc as LockingDisc
 from kinematics.indexing.locking import build_disc
 from kinematics.indexing.wheel import Wheel
 from kinematics.linkage.planar.mechanism import GROUND
@@ -37,7 +37,8 @@ from service.parts.assembly.sizes import (
 )
 from service.parts.cam.motion import ShaftMotion, make_rest_placement, make_rotation
 from service.parts.geometry.regions import Disc, Loop, Outline, Region, make_ring, widen_hull
-from synthesis.kinds.indexing.design import GenevaMechanism
+from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign
+from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.mechanisms.geneva import build_drive
 
 WHEEL_LINK, CRANK_LINK = "wheel", "crank"
@@ -79,7 +80,7 @@ class GenevaMotion(ShaftMotion):
         return make_rotation(self.sense * self.course.wheel_motion(state, self.rollers).s)
 
 
-def make_geneva_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_geneva_parts(design: IndexingDesign, problem: IndexingProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a planar Geneva drive.
 
     Parameters
@@ -94,18 +95,20 @@ def make_geneva_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     NotMade
         A drag link drives the crank, or the parts do not fit.
     """
-    if design.mechanism.drag_link is not None:
+    mechanism = design.mechanism
+    assert isinstance(mechanism, GenevaMechanism)
+    if mechanism.drag_link is not None:
         raise NotMade(
             "Parts are only available for Geneva drives whose crank is the input; the coupler of this drag link would "
             "collide with the shafts on both sides."
         )
-    return _GenevaFitting(design.mechanism, problem, query).build_assembly()
+    return _GenevaFitting(mechanism, problem, query).build_assembly()
 
 
 class _GenevaFitting(Fitting):
     """One request for the parts of a Geneva drive."""
 
-    def __init__(self, mechanism: GenevaMechanism, problem: Any, query: PartsQuery) -> None:
+    def __init__(self, mechanism: GenevaMechanism, problem: IndexingProblem, query: PartsQuery) -> None:
         self._mechanism, self._problem = mechanism, problem
         reach = mechanism.center_distance + mechanism.crank_radius
         super().__init__(
@@ -137,7 +140,7 @@ class _GenevaFitting(Fitting):
 class _Builder:
     """Makes the parts of a drive in given sizes; lengths in millimetres."""
 
-    def __init__(self, mechanism: GenevaMechanism, problem: Any, sizes: Sizes, factor: float) -> None:
+    def __init__(self, mechanism: GenevaMechanism, problem: IndexingProblem, sizes: Sizes, factor: float) -> None:
         self._sizes, self._mechanism, self._factor = sizes, mechanism, factor
         self._internal = mechanism.type == "geneva_internal"
         self._course = build_drive(mechanism)
@@ -347,7 +350,7 @@ class _Builder:
             bulges += [land, 0.0, side, 0.0, land, arc]
         return Loop(tuple(corners), tuple(bulges))
 
-    def _compute_locking(self) -> Any:
+    def _compute_locking(self) -> LockingDisc:
         """Return the disc or crescent in the crank's frame."""
         return build_disc(self.wheel, self._course.geneva, self._mechanism.rollers, self._gap, self._relief)
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import shapely
@@ -24,7 +23,8 @@ from service.parts.assembly.plate_stack import GROUND_CARRIER, PlateStack
 from service.parts.assembly.sizes import MILLIMETRES_PER_UNIT, WIDTH_PER_PIN, NotMade, PartsQuery, Sizes
 from service.parts.cam.motion import FULL_TURN, ShaftMotion, make_rest_placement, make_rotation
 from service.parts.geometry.regions import Disc, Loop, Region, make_polygon, widen_hull
-from synthesis.kinds.indexing.design import RatchetMechanism
+from synthesis.kinds.indexing.design import RatchetDesign, RatchetMechanism
+from synthesis.kinds.indexing.problem import IndexingProblem
 
 WHEEL_LINK, PAWL_LINK = "wheel", "pawl"
 ON_WHEEL = Carrier(WHEEL_LINK, None)
@@ -81,7 +81,7 @@ class RatchetMotion(ShaftMotion):
         return self.ratchet.pawl_lift(state - self.stops[number])
 
 
-def make_ratchet_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_ratchet_parts(design: RatchetDesign, problem: IndexingProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a ratchet.
 
     Parameters

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -40,7 +39,8 @@ from service.parts.gears.upright import FIRST_SHAFT_PLANE, FLOOR_CLEARANCE, Axle
 from service.parts.geometry.cut_solids import BoreCut, ConeCut, Cut, CutBody, HalfSpaceCut, SlotCut
 from service.parts.geometry.regions import Loop, make_ring
 from service.parts.geometry.solids import Body, Prism
-from synthesis.kinds.indexing.design import SphericalGenevaMechanism
+from synthesis.kinds.indexing.design import IndexingDesign, SphericalGenevaMechanism
+from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.mechanisms.geneva import build_drive
 
 CRANK_LINK, WHEEL_LINK = "shaft_1", "shaft_2"
@@ -105,7 +105,7 @@ class SphericalMotion(ShaftMotion):
         return Frame(np.zeros((len(state), 3)), self.frames[0].axes @ axes)
 
 
-def make_spherical_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_spherical_parts(design: IndexingDesign, problem: IndexingProblem, query: PartsQuery) -> Assembly:
     """Make the parts of a spherical Geneva drive.
 
     Parameters
@@ -120,13 +120,15 @@ def make_spherical_parts(design: Any, problem: Any, query: PartsQuery) -> Assemb
     NotMade
         The parts do not fit.
     """
-    return _SphericalFitting(design.mechanism, problem, query).build_assembly()
+    mechanism = design.mechanism
+    assert isinstance(mechanism, SphericalGenevaMechanism)
+    return _SphericalFitting(mechanism, problem, query).build_assembly()
 
 
 class _SphericalFitting(Fitting):
     """One request for the parts of a spherical drive."""
 
-    def __init__(self, mechanism: SphericalGenevaMechanism, problem: Any, query: PartsQuery) -> None:
+    def __init__(self, mechanism: SphericalGenevaMechanism, problem: IndexingProblem, query: PartsQuery) -> None:
         self._mechanism, self._problem = mechanism, problem
         size = 4.0 * mechanism.sphere_radius / math.cos(math.radians(mechanism.cone_angle))
         super().__init__(query, MILLIMETRES_PER_UNIT[problem.length_unit], size)
@@ -162,7 +164,9 @@ class _SphericalFitting(Fitting):
 class _Builder:
     """Makes the parts in given sizes; lengths in millimetres, angles in radians."""
 
-    def __init__(self, mechanism: SphericalGenevaMechanism, problem: Any, sizes: Sizes, factor: float) -> None:
+    def __init__(
+        self, mechanism: SphericalGenevaMechanism, problem: IndexingProblem, sizes: Sizes, factor: float
+    ) -> None:
         self._sizes, self._factor, self._stations = sizes, factor, mechanism.stations
         self._course, clearance = build_drive(mechanism), sizes.clearance
         self._step, self._cone = math.pi / mechanism.stations, math.radians(mechanism.cone_angle)

@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.linkage.layout import Division, Piece, list_pieces
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
-from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, make_fillers, make_pin
+from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Assembly, Carrier, Part, simplify_name
 from service.parts.assembly.plate_stack import STUB_LENGTH
@@ -149,11 +149,11 @@ class _Builder:
         division, mechanism = self._planes.division, self._mechanism
         if division is None or mechanism.input not in division.inside:
             return None
-        held = [joint for joint in mechanism.links[mechanism.input] if joint in mechanism.links[GROUND]]
+        pivots = [joint for joint in mechanism.links[mechanism.input] if joint in mechanism.links[GROUND]]
         alone = [
             joint
             for joint, group in self._groups.items()
-            if group & {*held} and sum(bool(piece.joints & group) for piece in self._pieces) == 1
+            if group & {*pivots} and sum(bool(piece.joints & group) for piece in self._pieces) == 1
         ]
         return next((joint for joint in alone if self._planes.pins[joint][0] == 0), None)
 
@@ -162,17 +162,17 @@ class _Builder:
         division = self._planes.division
         if division is None:
             return []
-        told = [
+        notes = [
             f"Link {division.link} consists of two plates, one on either side of the second base. Both are keyed to "
             f"the shaft {division.pivot}, which turns in that base, so that they move as one. Put the lower plate on "
             "the shaft before laying that base over it."
         ]
         if self._driven is not None:
-            told.append(
+            notes.append(
                 f"The input is keyed to the shaft {self._driven}, which is inserted from above and protrudes below "
                 "the base for the drive."
             )
-        return told
+        return notes
 
     def _group_joints(self, joint: str) -> set[str]:
         """Return the joints that share one pin with this joint: joints of one link in the same place."""
@@ -480,8 +480,8 @@ class _Builder:
         # The shaft has a keyway at every plate that rotates with it.
         seats = [Prism(section, *self._get_level(plane)) for plane in keyed]
         parts = make_pin(
-            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats,
-            stub=STUB_LENGTH * self._sizes.pin if driven else 0.0, upside_down=driven,
+            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes,
+            PinShape(seats, STUB_LENGTH * self._sizes.pin if driven else 0.0, driven),
         )  # fmt: skip
         parts += [self._make_key(name, carrier, place, plane) for plane in keyed]
         for span in spans:
@@ -491,10 +491,10 @@ class _Builder:
 
     def _make_key(self, name: str, carrier: Carrier, place: complex, plane: int) -> Part:
         bodies = (Prism(Region(make_key_section(place, self._sizes.pin, self._key)), *self._get_level(plane)),)
-        told = self._key.standard and f"{self._key.standard} x {self._sizes.thickness:g}"
+        designation = self._key.standard and f"{self._key.standard} x {self._sizes.thickness:g}"
         return Part(
             f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane),
-            MATERIALS[self._sizes.process][1], FASTENER_COLOUR, told,
+            MATERIALS[self._sizes.process][1], FASTENER_COLOUR, designation,
         )  # fmt: skip
 
 

@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from service.parts.linkage.builder import Planes, Slot, build_assembly, measure_
 from service.parts.linkage.gears import make_pair_wheels
 from service.parts.linkage.motion import LinkageMotion
 from synthesis.analyses.linkages.cycle import find_branch, find_cycle_along
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 from synthesis.verification.reconstruction import rebuild_mechanism
 
 DRIVE_INPUTS = 181
@@ -49,7 +51,7 @@ largest assembly are hardly thinner.
 Shafts = Literal["one_side", "both_sides"]
 
 
-def make_linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+def make_linkage_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> Assembly:
     """Make the parts of a linkage of pins and slides.
 
     Parameters
@@ -82,7 +84,7 @@ def make_linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly
 class _LinkageFitting(Fitting):
     """One request: a mechanism, and the options of its parts."""
 
-    def __init__(self, design: Any, problem: Any, query: PartsQuery) -> None:
+    def __init__(self, design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> None:
         mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         if mechanism is None:
             raise NotMade("The dimensions of this design do not assemble to a mechanism.")
@@ -171,8 +173,8 @@ class _LinkageFitting(Fitting):
         return Trial(None, reason)
 
     def _list_shaft_options(self) -> tuple[Shafts, ...]:
-        stated = self._query.shafts or getattr(self._block, "shafts", None)
-        return ("one_side", "both_sides") if stated is None else (stated,)
+        requested = self._query.shafts or getattr(self._block, "shafts", None)
+        return ("one_side", "both_sides") if requested is None else (requested,)
 
     def _try_shafts(self, sizes: Sizes, scale: float, shafts: Shafts) -> Trial:
         factor = self._unit * scale
@@ -223,7 +225,7 @@ class _LinkageFitting(Fitting):
 class _DividedLinkageFitting(_LinkageFitting):
     """A linkage with one link divided into two plates on either side of a base, in one of several ways."""
 
-    def __init__(self, design: Any, problem: Any, query: PartsQuery, ways: Sequence[Division]) -> None:
+    def __init__(self, design: AnyDesign, problem: ProblemBase, query: PartsQuery, ways: Sequence[Division]) -> None:
         super().__init__(design, problem, query)
         self._ways = ways
 
@@ -278,7 +280,7 @@ def _check_assembly(assembly: Assembly, sizes: Sizes) -> Trial:
     return Trial(None, fault) if fault else Trial(assembly, "")
 
 
-def _find_range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, float, bool]:
+def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tuple[float, float, bool]:
     """Return the range of the input for which the parts are made, and whether it is a full cycle.
 
     Raises
@@ -290,8 +292,9 @@ def _find_range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[fl
     branch = find_branch(mechanism)
     metrics = design.metrics
     used = getattr(metrics, "used_stroke", None)
-    if getattr(metrics, "used_range", None) is not None:
-        used = tuple(math.radians(end) for end in metrics.used_range)
+    used_range = getattr(metrics, "used_range", None)
+    if used_range is not None:
+        used = tuple(math.radians(end) for end in used_range)
     turns = not slides and branch is not None and branch.full
     if over == "cycle" or (over is None and (turns or used is None)):
         used = find_cycle_along(mechanism, branch)

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics.arrays import Complex
 from service.render.cam.scene import CamScene, SecondScene
-from service.render.page.labels import Labels
+from service.render.page.labels import Label, Labels
 from service.render.page.numbers import format_angle
 from service.render.page.sheet import draw_panel
 from service.render.page.svg import Box, Element, Viewport, draw_circle, draw_line, draw_path, draw_text, make_element
@@ -167,7 +167,7 @@ def _draw_stations(curve: CamCurve, viewport: Viewport, labels: Labels, centre: 
         group.add(draw_circle(at, STATION_RADIUS, fill=CURVE))
         away = 1j if centre is None else at - centre
         words, style = format_angle(degrees, 1), {"fill": GREY}
-        labels.place(at, words, STATION_FONT_SIZE, clearance=4.0, away=away, optional=True, style=style)
+        labels.place(at, Label(words, STATION_FONT_SIZE, style), clearance=4.0, away=away, optional=True)
     return group
 
 

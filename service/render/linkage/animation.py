@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,8 @@ from service.render.page.animation import FRAME_COUNT, Stroke, draw_gif, make_ci
 from service.render.page.svg import Box
 from service.render.page.symbols import COUPLER, CURVE, INK, INPUT, OUTPUT
 from service.render.page.symbols import GROUND as GROUND_COLOUR
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 CLOSURE_TOLERANCE = 1e-6
 """Distance of the joints between both ends of a cycle, as a share of its size, up to which the cycle is closed."""
@@ -26,7 +27,7 @@ JOINT_RADIUS, BLOCK_SIZE = 0.011, (0.056, 0.0336)
 PLATE_FILL = "#f6ece2"
 
 
-def draw_linkage_animation(design: Any, problem: Any, title: str) -> bytes:
+def draw_linkage_animation(design: AnyDesign, problem: ProblemBase, title: str) -> bytes:
     """Draw a cycle of a linkage design: a full turn in a loop, or from toggle to toggle and back."""
     scene = Scene.from_design(design)
     motion = scene.linkage.drive_over(_choose_inputs(scene.linkage))

@@ -7,21 +7,20 @@ linkage cannot be assembled. Lines that begin with ``#`` describe the table.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from service.render.linkage.motion import DrivenLinkage
 from service.render.page import table
 from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 STEP_COUNT = 360
 """Number of steps of the cycle."""
 
 
-def write_linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
+def write_linkage_table(design: AnyDesign, problem: ProblemBase, title: str) -> str:
     """Write the motion of a linkage design; numbers in full precision, cells empty where it cannot be assembled."""
     linkage, unit = DrivenLinkage.from_design(design), problem.length_unit
     slide = linkage.mechanism.has_slide_input

@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Slide
 from service.render.linkage.motion import Demand, DrivenLinkage
 from service.render.linkage.styles import GHOST_LINE, GROUND_LINE, TARGET_CURVE, USED_PATH, WHOLE_PATH, Style
-from service.render.page.labels import Labels
+from service.render.page.labels import Label, Labels
 from service.render.page.sheet import draw_clipping_panel, fit_panel
 from service.render.page.svg import (
     Box,
@@ -45,6 +44,7 @@ from service.render.page.symbols import (
     draw_target,
 )
 from service.render.page.symbols import GROUND as GROUND_COLOUR
+from synthesis.model.design_interface import AnyDesign
 
 LINK_WIDTH, PLATE_EDGE_WIDTH, JOINT_RADIUS = 5.0, 2.4, 4.5
 """Line widths of a bar of the bold linkage and of a plate's edge, and the radius of a joint, pixels."""
@@ -88,7 +88,7 @@ class Scene:
             self.used = linkage.trace_path(used, float(inputs[0]), float(inputs[-1]), SAMPLE_COUNT)
 
     @classmethod
-    def from_design(cls, design: Any) -> Scene:
+    def from_design(cls, design: AnyDesign) -> Scene:
         """Build the scene of a design at its targets, with the path of its point P if it has one."""
         linkage = DrivenLinkage.from_design(design)
         inputs = linkage.find_target_inputs(design)
@@ -217,13 +217,11 @@ def draw_scene(shown: Scene, view: Viewport, unit: str) -> Element:
         group.add(symbol)
     for demand in shown.demands:
         labels.place(
-            view.point(demand.point), f"{demand.index + 1}", 11.0, clearance=9.0, ring=CURVE, style={"fill": CURVE}
+            view.point(demand.point), Label(f"{demand.index + 1}", 11.0, {"fill": CURVE}, ring=CURVE), clearance=9.0
         )
     for name, place in shown.get_joints(0).items():
-        labels.place(
-            view.point(place), name[0], 13.0, subscript=name[1:], clearance=8.0, away=-1j,
-            style={"fill": INK, "font-weight": "bold"},
-        )  # fmt: skip
+        label = Label(name[0], 13.0, {"fill": INK, "font-weight": "bold"}, name[1:])
+        labels.place(view.point(place), label, clearance=8.0, away=-1j)
     bar, covered = draw_scale_bar(view, unit)
     labels.reserve(covered)
     return group.add(*labels.drawn, bar)

@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import cmath
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from ezdxf.layouts.layout import Modelspace
@@ -34,7 +33,8 @@ from service.render.linkage.drawing import Scene, make_block_corners, sort_aroun
 from service.render.linkage.motion import Demand, list_demands
 from service.render.page import dxf
 from service.render.page.svg import Box
-from synthesis.model.linkage.problem import LinkageProblem
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 LAYERS = {
     "GROUND": (8, "CONTINUOUS"),
@@ -74,7 +74,7 @@ COINCIDENCE_TOLERANCE = 1e-9
 """Ends of a path closer together than this share of the diagonal coincide."""
 
 
-def write_linkage_dxf(design: Any, problem: LinkageProblem, title: str) -> str:
+def write_linkage_dxf(design: AnyDesign, problem: ProblemBase, title: str) -> str:
     """Write a linkage design as a DXF document (R2010)."""
     scene, demanded = Scene.from_design(design), list_demands(problem)
     moving = [name for name in scene.mechanism.links if name != GROUND]

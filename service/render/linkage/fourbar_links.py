@@ -11,7 +11,7 @@ import cmath
 from service.render.linkage.fourbar import Configuration
 from service.render.linkage.fourbar_canvas import Canvas
 from service.render.linkage.styles import GHOST_LINE, GHOST_WIDTH, GROUND_LINE
-from service.render.page.labels import find_free_direction
+from service.render.page.labels import Label, find_free_direction
 from service.render.page.svg import Element, clip_polygon, draw_circle, draw_line, draw_polygon, make_element
 from service.render.page.symbols import (
     COUPLER,
@@ -140,9 +140,7 @@ def label_joints(canvas: Canvas, c: Configuration) -> None:
     ):
         if canvas.is_readable(joint):
             away = find_free_direction(rays)
-            canvas.labels.place(
-                point, words, JOINT_FONT_SIZE, subscript=digit, clearance=clearance, away=away, style=style
-            )
+            canvas.labels.place(point, Label(words, JOINT_FONT_SIZE, style, digit), clearance=clearance, away=away)
 
 
 def label_ghost(canvas: Canvas, c: Configuration) -> None:
@@ -153,7 +151,7 @@ def label_ghost(canvas: Canvas, c: Configuration) -> None:
             at, digits = canvas.to_sheet(joint), f"{c.index + 1}"
             away = at - canvas.to_sheet(pivot)
             canvas.labels.place(
-                at, words, GHOST_FONT_SIZE, subscript=digits, clearance=4.0, away=away, optional=True, style=style
+                at, Label(words, GHOST_FONT_SIZE, style, digits), clearance=4.0, away=away, optional=True
             )
 
 
@@ -166,4 +164,5 @@ def label_links(canvas: Canvas, c: Configuration) -> None:
         if abs(end - start) >= MIN_LABELLED_LENGTH:
             style = {"fill": colour, "font_style": "italic", "font_weight": "bold"}
             across, middle = 1j * (end - start) / abs(end - start), 0.5 * (start + end)
-            canvas.labels.place(middle, letter, LINK_FONT_SIZE, clearance=6.0, away=across, optional=True, style=style)
+            label = Label(letter, LINK_FONT_SIZE, style)
+            canvas.labels.place(middle, label, clearance=6.0, away=across, optional=True)

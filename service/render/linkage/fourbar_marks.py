@@ -11,6 +11,7 @@ from service.render.linkage.fourbar_canvas import Canvas
 from service.render.linkage.motion import Demand
 from service.render.linkage.styles import LIMIT_TICK, MISS_LINE, STANCE_LINE, TARGET_CURVE, USED_PATH, WHOLE_PATH
 from service.render.page import symbols
+from service.render.page.labels import Label
 from service.render.page.numbers import format_angle
 from service.render.page.svg import CLIP_MARGIN, clip_polyline, draw_circle, draw_line, draw_path
 from service.render.page.symbols import (
@@ -128,7 +129,8 @@ def label_demand(canvas: Canvas, demanded: Demand) -> None:
         # Put the number opposite to the direction arrow.
         away = -1j if demanded.angle is None else -cmath.exp(-1j * demanded.angle)
         style = {"fill": TARGET_COLOUR, "font_weight": "bold"}
-        canvas.labels.place(at, words, 11.0, clearance=TARGET_RADIUS + 2.0, away=away, ring=TARGET_COLOUR, style=style)
+        label = Label(words, 11.0, style, ring=TARGET_COLOUR)
+        canvas.labels.place(at, label, clearance=TARGET_RADIUS + 2.0, away=away)
 
 
 def label_input(canvas: Canvas, arc: complex | None) -> None:
@@ -136,10 +138,10 @@ def label_input(canvas: Canvas, arc: complex | None) -> None:
     scene, o2 = canvas.scene, canvas.to_sheet(canvas.scene.o2)
     if arc is not None:
         turned = format_angle(math.degrees(scene.end - scene.start), 1)
-        canvas.labels.place(arc, turned, 11.0, clearance=3.0, away=arc - o2, optional=True, style={"fill": INK})
+        canvas.labels.place(arc, Label(turned, 11.0, {"fill": INK}), clearance=3.0, away=arc - o2, optional=True)
     crank = float(scene.linkage.input)
     for limit in scene.limits or ():
         if canvas.is_readable(scene.o2 + cmath.rect(crank, limit)):
             away = cmath.exp(-1j * limit)
             tip = o2 + (canvas.viewport.scale * crank + TICK_LENGTH) * away
-            canvas.labels.place(tip, "limit", 10.0, clearance=2.0, away=away, optional=True, style={"fill": INPUT})
+            canvas.labels.place(tip, Label("limit", 10.0, {"fill": INPUT}), clearance=2.0, away=away, optional=True)

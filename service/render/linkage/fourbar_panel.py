@@ -14,6 +14,7 @@ from service.render.linkage import fourbar_links as links
 from service.render.linkage import fourbar_marks as marks
 from service.render.linkage.fourbar import FourbarScene
 from service.render.linkage.fourbar_canvas import Canvas, Detail
+from service.render.page.labels import Label
 from service.render.page.svg import Box, Element, Viewport, draw_polygon, draw_text, make_element
 from service.render.page.symbols import INK, draw_scale_bar
 
@@ -90,4 +91,4 @@ def _draw_frame(canvas: Canvas, detail: Detail, box: Box) -> None:
     canvas.root.add(draw_polygon(corners, fill="none", stroke=INK, stroke_width=0.9, stroke_dasharray="4 3"))
     canvas.labels.add_obstacles([np.array([*corners, corners[0]])], 4.0)
     clearance = 0.5 * max(box.width, box.height)
-    canvas.labels.place(box.centre, detail.name, 11.0, clearance=clearance, away=1 - 1j, style={"fill": INK})
+    canvas.labels.place(box.centre, Label(detail.name, 11.0, {"fill": INK}), clearance=clearance, away=1 - 1j)

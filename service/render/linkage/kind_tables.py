@@ -19,7 +19,7 @@ from service.render.linkage.fourbar import build_scene as fourbar_scene
 from service.render.linkage.fourbar_picture import FourbarPicture, describe_fourbar
 from service.render.linkage.function_diagram import draw_range_arc, make_function_diagram
 from service.render.linkage.motion import DrivenLinkage, get_stance_curve, get_target_curve, list_demands
-from service.render.linkage.sprung import make_spring_balancing
+from service.render.linkage.spring_balancing import make_spring_balancing
 from service.render.linkage.styles import STANCE_LINE
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
@@ -45,9 +45,11 @@ from synthesis.kinds.steering.design import SteeringDesign
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
+from synthesis.model.design_interface import AnyDesign
 from synthesis.model.dimension import Dimension
-from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign, SixbarMechanism
+from synthesis.model.linkage.answer import CouplerPoint, FourbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
+from synthesis.model.problem import ProblemBase
 
 SAMPLE_COUNT = 721
 """Number of points of a diagram's curve, and of P's path during a dwell."""
@@ -431,7 +433,7 @@ def make_parallel_motion(
         left_out={"base"},
         titles={"rotation": "rotation of the body", "translation": "Q from P"},
         standing="there",
-        more_dimensions=_list_coupler_point(design.mechanism),
+        more_dimensions=_list_coupler_point(design.mechanism.coupler_point, design.mechanism.reference_input_angle),
         diagrams=[
             Diagram(
                 f"transmission angle at the {link} (°) over the input's rotation",
@@ -445,19 +447,18 @@ def make_parallel_motion(
     )
 
 
-def _list_coupler_point(mechanism: Any) -> list[tuple[str, str]]:
-    point = mechanism.coupler_point
+def _list_coupler_point(point: CouplerPoint, input_angle: float) -> list[tuple[str, str]]:
     on_coupler = [
         ("coupler point A–P", format_length(point.distance)),
         ("its angle from A–B", format_angle(point.angle)),
     ]
-    return [*on_coupler, ("reference input angle", format_angle(mechanism.reference_input_angle))]
+    return [*on_coupler, ("reference input angle", format_angle(input_angle))]
 
 
 def _list_dwell_point(mechanism: DwellMechanism) -> list[tuple[str, str]]:
     """Return the rows of P on the coupler, or of third pins by their angles; their distances are among the links."""
     if mechanism.coupler_point is not None:
-        return _list_coupler_point(mechanism)
+        return _list_coupler_point(mechanism.coupler_point, mechanism.reference_input_angle)
     triad = mechanism.type == "dwell_stephenson_2"
     corners = [("O2", "A", "C"), ("B", "D", "E")] if triad else [("O4", "B", "P")]
     angles = []
@@ -543,6 +544,6 @@ _CONTENT_MAKERS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
 }
 
 
-def make_content(design: Any, problem: Any, linkage: DrivenLinkage) -> Content:
+def make_content(design: AnyDesign, problem: ProblemBase, linkage: DrivenLinkage) -> Content:
     """Return the sheet content of a design for its kind of problem."""
     return _CONTENT_MAKERS[problem.kind](design, problem, linkage)

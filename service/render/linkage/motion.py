@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,10 @@ from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.render import NotBuilt
 from synthesis.analyses.linkages.cycle import find_branch, find_cycle_along
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.design_interface import AnyDesign
 from synthesis.model.linkage.answer import TargetInput
+from synthesis.model.problem import ProblemBase
 from synthesis.verification.reconstruction import rebuild_mechanism
 
 
@@ -29,7 +32,7 @@ class DrivenLinkage:
         self.mechanism = mechanism
 
     @classmethod
-    def from_design(cls, design: Any) -> DrivenLinkage:
+    def from_design(cls, design: AnyDesign) -> DrivenLinkage:
         """Rebuild the linkage of a design from its dimensions and its skeleton alone.
 
         Raises
@@ -70,12 +73,12 @@ class DrivenLinkage:
         """Return the path of a joint between two inputs; NaN where the linkage cannot be assembled."""
         return np.asarray(self.drive_over(np.linspace(first, last, count)).joints[joint][0])
 
-    def convert_inputs(self, degrees: Any) -> Real:
+    def convert_inputs(self, degrees: Sequence[float] | Real) -> Real:
         """Convert inputs from the units of the answer (degrees, or lengths of an input slide)."""
         stated = np.asarray(degrees, dtype=np.float64)
         return stated if self.mechanism.has_slide_input else np.radians(stated)
 
-    def find_target_inputs(self, design: Any) -> Real:
+    def find_target_inputs(self, design: AnyDesign) -> Real:
         """Return the inputs at the targets of a design; without targets, the input of the reference configuration."""
         targets = getattr(design, "targets", None) or []
         # Kinds name the input of a target differently.
@@ -92,7 +95,7 @@ class Demand:
     angle: float | None
 
 
-def list_demands(problem: Any) -> list[Demand]:
+def list_demands(problem: ProblemBase) -> list[Demand]:
     """Return the targets of point P in a problem, in order; an empty list if there are none."""
     places = getattr(problem, "positions", None) or getattr(problem, "points", None) or []
     angles = [getattr(place, "angle", None) for place in places]
@@ -102,19 +105,19 @@ def list_demands(problem: Any) -> list[Demand]:
     ]
 
 
-def get_target_curve(problem: Any) -> Complex | None:
+def get_target_curve(problem: ProblemBase) -> Complex | None:
     """Return the curve that is required as a whole, closed if it is; None for separate target points."""
-    if not getattr(problem, "is_matched", False):
+    if not (isinstance(problem, PathProblem) and problem.is_matched):
         return None
     points = np.array([place.point for place in problem.points])
     return np.append(points, points[0]) if problem.closed else points
 
 
-def get_stance_curve(problem: Any) -> Complex | None:
+def get_stance_curve(problem: ProblemBase) -> Complex | None:
     """Return the required points of a stance, in order; None without a stance."""
-    stance = getattr(problem, "stance", None)
-    if stance is None:
+    if not isinstance(problem, PathProblem) or problem.stance is None:
         return None
+    stance = problem.stance
     (first, last), points = stance.points, np.array([place.point for place in problem.points])
     # A stance of a closed path may pass its last point.
     return np.concatenate([points[first:], points[: last + 1]]) if stance.wraps_around else points[first : last + 1]

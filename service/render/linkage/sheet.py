@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from pydantic import BaseModel
+
 from service.render.checks import describe_failures, describe_verdict, make_checks_block
 from service.render.linkage.content import Content
 from service.render.linkage.kind_tables import make_content
@@ -26,6 +28,8 @@ from service.render.page.sheet import (
     write_sheet,
 )
 from service.render.page.svg import Box
+from synthesis.model.design_interface import AnyDesign
+from synthesis.model.problem import ProblemBase
 
 VERTICAL_GAPS = 8.0, 10.0
 """Space above a diagram, and above tables below the picture, pixels."""
@@ -45,15 +49,15 @@ TITLES = {
 """Titles of metrics shared by several kinds whose field names are too terse."""
 
 
-def draw_linkage_sheet(design: Any, problem: Any, title: str) -> str:
+def draw_linkage_sheet(design: AnyDesign, problem: ProblemBase, title: str) -> str:
     """Draw a linkage design as a complete SVG document."""
     content = make_content(design, problem, DrivenLinkage.from_design(design))
     unit = problem.length_unit
     tables = [
-        content.dimensions or blocks.make_rows(f"Dimensions ({unit})", _list_dimensions(design, content)),
+        content.dimensions or blocks.make_rows(f"Dimensions ({unit})", _list_dimensions(design.mechanism, content)),
         *content.tables,
         make_checks_block(design.verification, problem),
-        blocks.make_rows("Metrics", _list_metrics(design, problem, content)),
+        blocks.make_rows("Metrics", _list_metrics(design.metrics, problem, content)),
     ]
     picture = content.picture
     width = INNER_WIDTH if picture.wide else get_drawing_width()
@@ -72,20 +76,20 @@ def draw_linkage_sheet(design: Any, problem: Any, title: str) -> str:
     return write_sheet(title or content.name, words, described, [*parts, *drawn], max(bottom, y))
 
 
-def _list_metrics(design: Any, problem: Any, content: Content) -> list[tuple[str, str]]:
+def _list_metrics(metrics: BaseModel, problem: ProblemBase, content: Content) -> list[tuple[str, str]]:
     """Return the metrics; individual transmission angles only if there are several, because their minimum is listed
     anyway.
     """
-    metrics, left_out = design.metrics, set(content.left_out)
+    left_out = set(content.left_out)
     # A single transmission angle is already listed as the minimum.
     if len(getattr(metrics, "transmission_angles", ())) < 2:
         left_out.add("transmission_angles")
     return list_entries(metrics, problem, left_out, {**TITLES, **content.titles})
 
 
-def _list_dimensions(design: Any, content: Content) -> list[tuple[str, str]]:
+def _list_dimensions(mechanism: Any, content: Content) -> list[tuple[str, str]]:
     """Return links, further dimensions of the kind, and the skeleton."""
-    mechanism, size = design.mechanism, content.picture.box.diagonal
+    size = content.picture.box.diagonal
     links = mechanism.links if isinstance(mechanism.links, dict) else mechanism.links.model_dump()
     rows = [(name.replace("_", " "), format_length(value)) for name, value in links.items()]
     rows += content.more_dimensions

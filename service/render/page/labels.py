@@ -59,6 +59,28 @@ SAMPLE_STEP = 5.0
 """Distance of the sample points on lines that labels avoid, pixels; less than half the height of any label."""
 
 
+class Label(NamedTuple):
+    """The text of a label.
+
+    Attributes
+    ----------
+    words, subscript : str
+        The text.
+    size : float
+        Font size, pixels.
+    style : mapping
+        Attributes of the text.
+    ring : str, optional
+        Colour of a circle around the text.
+    """
+
+    words: str
+    size: float
+    style: Mapping[str, str]
+    subscript: str = ""
+    ring: str | None = None
+
+
 class LabelPlacement(NamedTuple):
     """A label's box, and a leader from its point if it is far away."""
 
@@ -88,15 +110,11 @@ class Labels:
     def place(
         self,
         point: complex,
-        words: str,
-        size: float,
+        label: Label,
         *,
-        subscript: str = "",
         clearance: float = 6.0,
         away: complex = 1j,
         optional: bool = False,
-        ring: str | None = None,
-        style: Mapping[str, str],
     ) -> None:
         """Draw a label next to a point of the sheet.
 
@@ -104,23 +122,17 @@ class Labels:
         ----------
         point : complex
             The labelled point; outside the panel it gets no label.
-        words, subscript : str
-            The text.
-        size : float
-            Font size, pixels.
+        label : Label
         clearance : float
             Radius of the mark at the point, pixels.
         away : complex
             Preferred direction from the point to the label.
         optional : bool
             Omit the label if it would cover another one or be far from its point.
-        ring : str, optional
-            Colour of a circle around the text.
-        style : mapping
-            Attributes of the text.
         """
         if not self._panel.holds(point):
             return
+        words, size, style, subscript, ring = label
         width = estimate_text_width(words, size) + estimate_text_width(subscript, SUBSCRIPT * size)
         height = (FONT_ASCENT + FONT_DESCENT) * size + (SUBSCRIPT_DESCENT * size if subscript else 0.0)
         if ring:

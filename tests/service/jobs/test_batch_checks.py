@@ -28,7 +28,7 @@ def refused(problem, vary, **fields):
 def test_what_is_wrong_with_the_problem_itself_is_told_at_once(varied):
     refusal = refused({"kind": "cam", "segments": [{}] * 9000}, [*varied, SEEDS])
     assert {path.split("/")[1] for path, _ in refusal.errors} == {"problem"}
-    assert refusal.detail == "The request has more than 20 faults; the first 20 are listed."
+    assert refusal.detail == "More than 20 fields of the request are invalid; the first 20 are listed."
     assert refusal.type == "/problems/invalid-problem"
 
 

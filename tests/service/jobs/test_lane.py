@@ -4,14 +4,14 @@ import pytest
 from sqlalchemy.exc import IntegrityError, OperationalError
 
 from service.jobs.workers import lane
-from service.jobs.workers.lane import Lane
+from service.jobs.workers.lane import Lane, Stores
 
 
 @pytest.fixture
 def idle(monkeypatch):
     """A lane that has not been started."""
     monkeypatch.setattr(lane, "RETRY_PERIOD_S", 0.0)
-    return Lane("lane", None, None, None, None, 1.0, None, None, ())
+    return Lane("lane", None, Stores(None, None), None, 1.0, None, None, ())
 
 
 def write(errors, calls):

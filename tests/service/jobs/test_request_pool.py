@@ -12,7 +12,15 @@ from typing import Any
 
 import pytest
 
-from service.jobs.processes.request_pool import Busy, ClientGone, GivenUp, Limits, ProcessLost, RequestPool
+from service.jobs.processes.request_pool import (
+    Busy,
+    ClientGone,
+    GivenUp,
+    Limits,
+    ProcessLost,
+    ProcessStart,
+    RequestPool,
+)
 from service.jobs.processes.request_queue import Call, RequestQueue
 from tests.support.service.request_pool import never
 
@@ -37,7 +45,7 @@ def raises_awkwardly() -> None:
 @pytest.fixture
 def pool() -> Any:
     """Of a process that starts at once, as it loads nothing."""
-    made = RequestPool("pool", operator.itemgetter, (0,), Limits(1.0))
+    made = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), Limits(1.0))
     yield made
     made.stop()
 
@@ -65,7 +73,7 @@ def test_a_call_that_is_left_or_takes_too_long_ends_its_process(pool: RequestPoo
 
 
 def test_what_no_pipe_carries_is_raised_by_its_words_and_not_taken_for_a_lack_of_memory() -> None:
-    made = RequestPool("pool", operator.itemgetter, (0,), Limits(20.0))
+    made = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), Limits(20.0))
 
     async def all_of_it() -> None:
         with pytest.raises(RuntimeError, match="Awkward: a broken wheel"):
@@ -116,7 +124,7 @@ def _no_process(*_settings: Any) -> None:
 
 
 def test_a_process_that_cannot_start_is_no_fault_of_the_call() -> None:
-    pool = RequestPool("pool", _no_process, (0,), Limits(1.0))
+    pool = RequestPool("pool", ProcessStart(_no_process, (0,)), Limits(1.0))
     try:
         with pytest.raises(ProcessLost):
             asyncio.run(pool.call(never, "acme", math.hypot, 3.0, 4.0))
@@ -135,7 +143,7 @@ def spin(seconds: float) -> float:
 def test_long_calls_leave_a_process_to_short_ones() -> None:
     """Four tenants post what takes all the time that there is; a fifth one is answered all the same."""
     limits = Limits(wall_s=90.0, cpu_s=1.5, short_s=0.2)
-    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=3, max_long=1, wait_s=60.0)
+    pool = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), limits, hands=3, max_long=1, wait_s=60.0)
 
     async def all_of_it() -> None:
         await asyncio.gather(*(pool.call(never, f"warm-{n}", math.hypot, 1.0, n) for n in range(6)))
@@ -157,7 +165,7 @@ def test_long_calls_leave_a_process_to_short_ones() -> None:
 
 def test_processor_time_is_bounded_and_a_long_call_that_waited_is_done() -> None:
     limits = Limits(wall_s=90.0, cpu_s=1.0, short_s=0.1)
-    pool = RequestPool("pool", operator.itemgetter, (0,), limits, hands=2, max_long=1)
+    pool = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), limits, hands=2, max_long=1)
 
     async def all_of_it() -> None:
         with pytest.raises(GivenUp, match="time"):
@@ -172,7 +180,7 @@ def test_processor_time_is_bounded_and_a_long_call_that_waited_is_done() -> None
 
 
 def test_who_is_not_begun_in_time_is_told_so() -> None:
-    pool = RequestPool("pool", operator.itemgetter, (0,), Limits(20.0), wait_s=0.5)
+    pool = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), Limits(20.0), wait_s=0.5)
 
     async def all_of_it() -> None:
         assert await pool.call(never, "acme", math.hypot, 3.0, 4.0) == 5.0
@@ -197,7 +205,7 @@ def test_tenants_have_their_turns() -> None:
 
 
 def test_an_answer_of_bytes_and_what_no_future_takes() -> None:
-    pool = RequestPool("pool", operator.itemgetter, (0,), Limits(20.0))
+    pool = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), Limits(20.0))
 
     async def all_of_it() -> None:
         assert len(await pool.call(never, "acme", bytes, 5_000_000)) == 5_000_000

@@ -14,8 +14,8 @@ from scipy.spatial import ConvexHull
 
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.model import Assembly, Carrier, Frame, Part
+from service.parts.drawings.depth_buffer import find_nearest
 from service.parts.drawings.dxf import write_cutting_dxf
-from service.parts.drawings.rendered import find_nearest
 from service.parts.gears.motion import BodyRotation, TrainMotion
 from service.parts.geometry.regions import (
     Disc,

@@ -126,13 +126,13 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
 
 
 def _check_counterweights(
-    stated: Counterweights, weights: Sequence[Counterweight], found: Sequence[Weight], scale: float
+    limits: Counterweights, weights: Sequence[Counterweight], found: Sequence[Weight], scale: float
 ) -> list[Check]:
     """Check the counterweights of a design against the limits of their mass and size.
 
     Parameters
     ----------
-    stated : Counterweights
+    limits : Counterweights
         The limits.
     weights, found
         The counterweights as reported, and as the optimization found them.
@@ -141,23 +141,23 @@ def _check_counterweights(
     """
     checks = []
     masses = [weight.mass for weight in weights]
-    if stated.total_mass is not None:
-        checks.append(check_maximum("total_mass", math.fsum(masses), stated.total_mass, MASS, SIZE_TOLERANCE))
-    if stated.max_mass is not None and masses:
-        checks.append(check_maximum("mass", max(masses), stated.max_mass, MASS, SIZE_TOLERANCE))
-    if stated.reach is not None and weights:
+    if limits.total_mass is not None:
+        checks.append(check_maximum("total_mass", math.fsum(masses), limits.total_mass, MASS, SIZE_TOLERANCE))
+    if limits.max_mass is not None and masses:
+        checks.append(check_maximum("mass", max(masses), limits.max_mass, MASS, SIZE_TOLERANCE))
+    if limits.reach is not None and weights:
         checks.append(
-            check_maximum("reach", max(weight.radius for weight in weights), stated.reach, LENGTH, SIZE_TOLERANCE)
+            check_maximum("reach", max(weight.radius for weight in weights), limits.reach, LENGTH, SIZE_TOLERANCE)
         )
-    if stated.max_gyration is not None and weights:
+    if limits.max_gyration is not None and weights:
         about = [(weight.mass, weight.inertia / scale**2 + weight.mass * weight.radius**2) for weight in weights]
         gyration = max(math.sqrt(inertia / mass) if mass > 0.0 else math.inf for mass, inertia in about)
-        checks.append(check_maximum("gyration", gyration, stated.max_gyration, LENGTH, GYRATION_TOLERANCE))
-    if stated.max_disc_radius is not None and weights:
+        checks.append(check_maximum("gyration", gyration, limits.max_gyration, LENGTH, GYRATION_TOLERANCE))
+    if limits.max_disc_radius is not None and weights:
         radius = max(weight.disc_radius or 0.0 for weight in weights)
-        checks.append(check_maximum("disc_radius", radius, stated.max_disc_radius, LENGTH, SIZE_TOLERANCE))
-    discs = [(weight.inertia, stated.compute_inertia(weight.mass, scale)) for weight in found if weight.mass > 0.0]
-    if stated.density is not None and discs:
+        checks.append(check_maximum("disc_radius", radius, limits.max_disc_radius, LENGTH, SIZE_TOLERANCE))
+    discs = [(weight.inertia, limits.compute_inertia(weight.mass, scale)) for weight in found if weight.mass > 0.0]
+    if limits.density is not None and discs:
         checks.append(
             check_minimum("inertia_over_disc", min(own / disc for own, disc in discs), 1.0, slack=SIZE_TOLERANCE)
         )
