@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import MechanismError as ImpossibleMechanism
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms import GivenMechanism, MechanismError, is_known_by_dimensions
+from synthesis.model.protocols import SkeletonMechanism
 
 _GIVEN_ADAPTER: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
-def rebuild_mechanism(mechanism: BaseModel, *, from_skeleton: bool = False) -> Mechanism | None:
+def rebuild_mechanism(mechanism: SkeletonMechanism, *, from_skeleton: bool = False) -> Mechanism | None:
     """Rebuild the mechanism of an answer in its reference configuration.
 
     If the dimensions of a type are complete, its skeleton is ignored. Every other type is rebuilt from its skeleton,
@@ -19,7 +20,7 @@ def rebuild_mechanism(mechanism: BaseModel, *, from_skeleton: bool = False) -> M
 
     Parameters
     ----------
-    mechanism : BaseModel
+    mechanism : SkeletonMechanism
         Any answer's mechanism.
     from_skeleton : bool
         Use the skeleton in any case, after a comparison with the dimensions: it has joints that the dimensions lack,
