@@ -73,7 +73,7 @@ class VerifiedRange(Protocol):
 
 
 class LinkageMeasures(VerifiedRange, Protocol):
-    """Measured properties that every linkage has, whatever its kind."""
+    """Measured properties that linkages of all kinds have."""
 
     @property
     def min_transmission_angle(self) -> float:
