@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 from kinematics.kernel_marks import LINKAGES_PART, is_compiled
 from kinematics.linkage import warm
-from synthesis.model.answer import Result
+from synthesis.model.answer import AnyResult
 from synthesis.model.counting import choose_word, format_count
-from synthesis.model.kind import Kind, Progress, scale_progress
-from synthesis.model.linkage.problem import FORCE_NAMES, LinkageProblem
+from synthesis.model.kind import AnyKind, Progress, scale_progress
+from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
 from synthesis.nearest_miss import Relaxation, find_nearest_miss
 from synthesis.registry import KINDS
-from synthesis.results.forces import add_forces_to_designs, report_unknown_forces
-from synthesis.results.layout import lay_out_designs
-from synthesis.results.manufacture import analyze_all_manufacture
+from synthesis.results.forces import report_unknown_forces
 from synthesis.results.measured_ranking import (
     MAX_EXAMINED,
     MAX_ROUNDED,
@@ -25,6 +22,7 @@ from synthesis.results.measured_ranking import (
     sort_by_measure,
     widen_search,
 )
+from synthesis.results.measurement import measure_designs
 from synthesis.results.pareto import pareto_front
 from synthesis.results.practicality import sort_usable_first
 from synthesis.results.rounding import round_designs
@@ -50,7 +48,7 @@ def _ignore_progress(_fraction: float, _message: str) -> None:
     pass
 
 
-def solve(problem: ProblemBase, progress: Progress | None = None) -> Result[Any]:
+def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
     """Solve a problem and verify every design.
 
     Parameters
@@ -69,41 +67,38 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> Result[Any]
     told = _ignore_progress if progress is None else progress
     kind = KINDS[problem.kind]
     asked = widen_search(problem)
-    result: Result[Any] = kind.solve(asked, scale_progress(told, 0.0, SEARCH_SHARE))
+    result: AnyResult = kind.solve(asked, scale_progress(told, 0.0, SEARCH_SHARE))
     # Designs that fail a check are listed only on request and do not count as a result.
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; searching the nearest miss")
         rest = scale_progress(told, SEARCH_SHARE, 1.0)
         result = _apply_relaxation(asked, result, find_nearest_miss(asked, kind, rest), kind)
-    # Order matters: expensive measures first select and rank, rounding changes designs, and missing results come last.
     if isinstance(problem, LinkageProblem):
-        if problem.rank_by in MAX_EXAMINED:
-            measured = _measure_designs(problem, result, problem.rank_by)
-            result = search_below_limits(problem, measured, lambda narrower: kind.solve(narrower, _ignore_progress))
-        if problem.manufacture is not None and problem.manufacture.is_gridded:
-            result = _round_designs(problem, result, kind)
-        # Practicality is judged in the default order, in which designs were searched.
-        designs, remark = sort_usable_first(widen_search(problem), result.designs)
-        if problem.rank_by in MAX_EXAMINED:
-            result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
-        else:
-            result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
-        result = report_unknown_forces(problem, _measure_designs(problem, result, "planes", "yield", *FORCE_NAMES))
-        result = result.model_copy(update={"front": pareto_front(result.designs)})
+        result = _finish_linkages(problem, result, kind)
     told(1.0, "verified")
     return result
 
 
-def _measure_designs(problem: LinkageProblem, result: Result[Any], *orders: str) -> Result[Any]:
-    """Add the results that these orders need to the finished designs, if the problem has the blocks for them."""
-    if "planes" in orders and problem.layout is not None:
-        result = lay_out_designs(problem.layout, result)
-    if "yield" in orders and problem.manufacture is not None:
-        result = analyze_all_manufacture(problem, result)
-    return add_forces_to_designs(problem, result) if set(FORCE_NAMES) & set(orders) else result
+def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) -> AnyResult:
+    """Rank the linkages of a search, round them to the grid, and add what the blocks of the problem request."""
+    # Order matters: expensive measures first select and rank, rounding changes designs, and missing results come last.
+    is_measured = problem.rank_by in MAX_EXAMINED
+    if is_measured:
+        result = measure_designs(problem, result, problem.rank_by)
+        result = search_below_limits(problem, result, lambda narrower: kind.solve(narrower, _ignore_progress))
+    if problem.manufacture is not None and problem.manufacture.is_gridded:
+        result = _round_designs(problem, result, kind)
+    # Practicality is judged in the default order, in which designs were searched.
+    designs, remark = sort_usable_first(widen_search(problem), result.designs)
+    if is_measured:
+        result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
+    else:
+        result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
+    result = report_unknown_forces(problem, measure_designs(problem, result))
+    return result.model_copy(update={"front": pareto_front(result.designs)})
 
 
-def _round_designs(problem: LinkageProblem, result: Result[Any], kind: Kind[Any, Any]) -> Result[Any]:
+def _round_designs(problem: LinkageProblem, result: AnyResult, kind: AnyKind) -> AnyResult:
     """Round designs to the grid; if they are ranked by a measured quantity, round only the best ones."""
     if problem.rank_by not in MAX_EXAMINED:
         return round_designs(problem, result, kind.nearly)
@@ -112,12 +107,10 @@ def _round_designs(problem: LinkageProblem, result: Result[Any], kind: Kind[Any,
     every = problem.model_copy(update={"max_designs": len(first) or 1})
     rounded = round_designs(every, result.model_copy(update={"designs": first}), kind.nearly)
     # Rounding changes the design, so its measured quantity must be recomputed.
-    return _measure_designs(problem, rounded, problem.rank_by)
+    return measure_designs(problem, rounded, problem.rank_by)
 
 
-def _apply_relaxation(
-    problem: ProblemBase, result: Result[Any], found: Relaxation, kind: Kind[Any, Any]
-) -> Result[Any]:
+def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation, kind: AnyKind) -> AnyResult:
     """Add designs found by ignoring constraints, or the nearest miss, to an answer without designs."""
     if not found.sound:
         miss = found.nearest_miss

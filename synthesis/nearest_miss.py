@@ -17,22 +17,33 @@ their nearest miss among the designs that were driven and failed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Generic, NamedTuple, TypeVar
 
-from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Verification
+from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.kind import Kind, Progress, RatioCheck, scale_progress
-from synthesis.model.linkage.problem import FORCE_NAMES, Constraints, Region
+from synthesis.model.json_object import JsonObject
+from synthesis.model.kind import AnyKind, Progress, RatioCheck, scale_progress
+from synthesis.model.linkage.problem import FORCE_NAMES, Constraints, LinkageProblem, Region
 from synthesis.model.problem import ProblemBase
-from synthesis.results.forces import add_force_checks, add_forces
+from synthesis.model.protocols import DrivenDesign, HasTolerance, VerifiedDesign
+from synthesis.results.forces import check_forces
 from synthesis.results.time_budget import MeteredSearch, SearchBudget
 from synthesis.verification.constraints import check_constraints, check_zone
 from synthesis.verification.measures import Measures, list_link_lengths
 from synthesis.verification.shared_constraints import check_workspace_of_design
 from synthesis.verification.workspace import WORKSPACE_CHECKS
 
-Continue = Callable[[Any, Sequence[Any], Progress], Sequence[Any] | None]
+Design = TypeVar("Design", bound=VerifiedDesign)
+
+Solve = MeteredSearch[[ProblemBase, Progress], AnyResult]
+"""The solver of a kind, within the time budget."""
+
+Continuation = MeteredSearch[[ProblemBase, Sequence[DrivenDesign], Progress], Sequence[DrivenDesign] | None]
+"""The continuation of a kind (:attr:`synthesis.model.kind.Kind.nearer`), within the time budget."""
+
+Continue = Callable[[LinkageProblem, Sequence[DrivenDesign], Progress], Sequence[DrivenDesign] | None]
+"""Finds designs nearer to a stricter limit from those at hand; None if it does not support the problem."""
 
 MAX_DESIGNS = 20
 """Maximum number of designs of each relaxed problem, the likely nearest ones first."""
@@ -58,9 +69,9 @@ NEAR_GAP = 0.05
 MAX_SINGLE_CONSTRAINTS = 2
 """Maximum number of constraints of which each is dropped in turn in any case."""
 
-REACHABLE_MEASURES: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
-    "min_transmission_angle": ("min_transmission_angle", max),
-    "max_link_ratio": ("link_ratio", min),
+REACHABLE_MEASURES: Mapping[str, tuple[Callable[[DrivenDesign], float], Callable[[Sequence[float]], float]]] = {
+    "min_transmission_angle": (lambda design: design.metrics.min_transmission_angle, max),
+    "max_link_ratio": (lambda design: design.metrics.link_ratio, min),
 }
 """Reported measures by constraint, and the function that selects the best value reachable with all others."""
 
@@ -84,10 +95,10 @@ DRIVER_JOINTS = "O6", "C", "D"
 """Joints of a driver dyad, to which the zones of the linkage's pivots do not apply."""
 
 
-class _Miss(NamedTuple):
+class _Miss(NamedTuple, Generic[Design]):
     """A design, its failed checks, and the size of the task, by which distances from zones are measured."""
 
-    design: Any
+    design: Design
     broken: list[Check]
     size: float = 1.0
 
@@ -100,12 +111,12 @@ class _Miss(NamedTuple):
 class Relaxation(NamedTuple):
     """Result of relaxing a problem: designs that satisfy all constraints after all, or the nearest miss."""
 
-    sound: list[Any]
+    sound: Sequence[VerifiedDesign]
     nearest_miss: NearestMiss[Any] | None
 
 
 def find_nearest_miss(
-    problem: ProblemBase, kind: Kind[Any, Any], progress: Progress, allowance: SearchBudget | None = None
+    problem: ProblemBase, kind: AnyKind, progress: Progress, allowance: SearchBudget | None = None
 ) -> Relaxation:
     """Find the nearest miss of a problem for which no design was found.
 
@@ -126,17 +137,19 @@ def find_nearest_miss(
         Designs that satisfy all constraints although they were found without one. If there are none, the nearest miss,
         or None if no design is found without the constraints either.
     """
-    reachable: dict[str, Any] = {}
+    reachable: JsonObject = {}
     purse = SearchBudget() if allowance is None else allowance
-    search = purse.meter_search(kind.solve)
-    onward = purse.meter_search(_continue_nothing if kind.nearer is None else kind.nearer)
+    search: Solve = purse.meter_search(kind.solve)
+    onward: Continuation = purse.meter_search(_continue_nothing if kind.nearer is None else kind.nearer)
+    sound: Sequence[VerifiedDesign] = []
+    misses: Sequence[_Miss[Any]] = []
     # From the least to the most drastic relaxation; the first that gives designs ends the search.
-    sound, misses = _relax_workspace(problem, search, scale_progress(progress, 0.0, 0.4))
-    if not sound and not misses:
-        sound, misses = _relax_constraints(problem, search, onward, scale_progress(progress, 0.0, 0.8), reachable)
+    if isinstance(problem, LinkageProblem):
+        sound, misses = _relax_workspace(problem, search, scale_progress(progress, 0.0, 0.4))
+        if not sound and not misses:
+            sound, misses = _relax_constraints(problem, search, onward, scale_progress(progress, 0.0, 0.8), reachable)
     if sound:
         return Relaxation(sound, None)
-    span = scale_progress(progress, 0.0, 0.8)
     span = scale_progress(progress, 0.0, 0.8)
     misses = misses or _relax_tolerance(problem, kind.ratio_check, search, span, reachable)
     if not misses:
@@ -147,25 +160,28 @@ def find_nearest_miss(
     progress(1.0, "verified")
     if not misses:
         return Relaxation([], None)
-    # Compare by the sum of relative gaps.
-    nearest = min(misses, key=lambda miss: miss.distance)
-    gaps = [
-        Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
-        for check in nearest.broken
-    ]
-    return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
+    nearest = _sort_misses(misses)[0]
+    gaps = [Gap.from_check(check) for check in nearest.broken]
+    return Relaxation([], NearestMiss[Any](design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
 
 
-def _continue_nothing(_problem: Any, _designs: Sequence[Any], _progress: Progress) -> None:
+def _sort_misses(misses: Iterable[_Miss[Design]]) -> list[_Miss[Design]]:
+    """Return the misses, the smallest sum of relative gaps first."""
+    return sorted(misses, key=lambda miss: miss.distance)
+
+
+def _continue_nothing(_problem: ProblemBase, _designs: Sequence[DrivenDesign], _progress: Progress) -> None:
     """Return None: the continuation of kinds that support none."""
 
 
-def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> tuple[list[Any], list[_Miss]]:
+def _relax_workspace(
+    problem: LinkageProblem, solve: Solve, progress: Progress
+) -> tuple[list[DrivenDesign], list[_Miss[DrivenDesign]]]:
     """Solve the problem with a relaxed workspace; return designs that fit into the workspace anyway, and the others.
 
     More of the workspace is dropped only if dropping less gives no design.
     """
-    space = getattr(problem, "space", None)
+    space = problem.space
     if space is None:
         return [], []
     touching = space.model_copy(update={"clearance": 0.0})
@@ -173,8 +189,8 @@ def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> 
     looser = [touching] if space.obstacles and space.clearance > 0.0 else []
     # Without zones the next step would drop the whole workspace, so skip this one.
     looser += [zoned] if space.has_swept_constraints and zoned.has_constraints else []
-    sound: list[Any] = []
-    misses: list[_Miss] = []
+    sound: list[DrivenDesign] = []
+    misses: list[_Miss[DrivenDesign]] = []
     # The last step drops the workspace altogether.
     for n, less in enumerate([*looser, None]):
         update = {"space": less, "include_failed": False, "max_designs": _limit_designs(problem)}
@@ -182,38 +198,37 @@ def _relax_workspace(problem: Any, solve: MeteredSearch, progress: Progress) -> 
         found = solve(problem.model_copy(update=update), span).designs
         judged = [check_workspace_of_design(problem, design) for design in map(_drop_workspace_checks, found)]
         verdicts = [design for design in judged if design is not None]
-        broken = [[check for check in design.verification.checks if not check.passed] for design in verdicts]
-        sound = [design for design, lacks in zip(verdicts, broken, strict=True) if not lacks]
+        sound = [design for design in verdicts if not design.verification.failures]
         size = _measure_task(problem)
-        misses = [_Miss(design, lacks, size) for design, lacks in zip(verdicts, broken, strict=True) if lacks]
+        misses = [_Miss(design, lacks, size) for design in verdicts if (lacks := design.verification.failures)]
         if sound or misses:
             break
     return sound, misses
 
 
-def _drop_workspace_checks(design: Any) -> Any:
+def _drop_workspace_checks(design: DrivenDesign) -> DrivenDesign:
     """Remove the workspace checks of a design, so that it can be checked against another workspace."""
     checks = [check for check in design.verification.checks if check.name not in WORKSPACE_CHECKS]
     return design.model_copy(update={"verification": Verification.from_checks(checks)})
 
 
 def _relax_constraints(
-    problem: Any, solve: MeteredSearch, nearer: MeteredSearch, progress: Progress, reachable: dict[str, float]
-) -> tuple[list[Any], list[_Miss]]:
+    problem: LinkageProblem, solve: Solve, nearer: Continuation, progress: Progress, reachable: JsonObject
+) -> tuple[list[DrivenDesign], list[_Miss[DrivenDesign]]]:
     """Solve the problem without one of its constraints, or without all if that gives no design.
 
     Return the designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
     """
     stated = _list_constraints(problem)
-    free: list[_Miss] = []
+    free: list[_Miss[DrivenDesign]] = []
     if len(stated) > MAX_SINGLE_CONSTRAINTS:
         # With many constraints drop only those one by one that the best design without any of them violates.
         relaxed = _solve_relaxed(problem, stated, solve, progress)
         if relaxed.sound or not relaxed.misses:
             return relaxed.sound, []
         free = relaxed.misses
-        stated = _list_broken_constraints(min(free, key=lambda miss: miss.distance))
-    misses: list[_Miss] = []
+        stated = _list_broken_constraints(_sort_misses(free)[0])
+    misses: list[_Miss[DrivenDesign]] = []
     exhaustive = searched = True
     for n, name in enumerate(stated):
         # After the first, continue only while no design is near and another search fits the budget.
@@ -235,7 +250,7 @@ def _relax_constraints(
         if name in REACHABLE_MEASURES and relaxed.designs:
             measure, best = REACHABLE_MEASURES[name]
             designs = [*relaxed.designs, *(miss.design for miss in reached)]
-            reachable[name] = best([getattr(design.metrics, measure) for design in designs])
+            reachable[name] = best([measure(design) for design in designs])
     # No single constraint is the obstacle: drop all of them together.
     if not misses and not free and len(stated) > 1:
         relaxed = _solve_relaxed(problem, stated, solve, progress)
@@ -249,16 +264,16 @@ def _relax_constraints(
             if name in REACHABLE_MEASURES:
                 measure, best = REACHABLE_MEASURES[name]
                 # The best value reached counts, whether by dropping or by approaching the limit.
-                reachable[name] = best([reachable[name], getattr(miss.design.metrics, measure)])
+                reachable[name] = best([reachable[name], measure(miss.design)])
         misses += reached
     return [], misses or free
 
 
 def _relax_tolerance(
-    problem: Any, ratio: RatioCheck | None, solve: MeteredSearch, progress: Progress, reachable: dict[str, float]
-) -> list[_Miss]:
+    problem: ProblemBase, ratio: RatioCheck | None, solve: Solve, progress: Progress, reachable: JsonObject
+) -> list[_Miss[VerifiedDesign]]:
     """Find the most accurate gears if none are within the tolerance."""
-    if ratio is None or problem.tolerance is None:
+    if ratio is None or not isinstance(problem, HasTolerance) or problem.tolerance is None:
         return []
     update = {"tolerance": None, "rank_by": "error", "include_failed": False, "max_designs": 1}
     misses = []
@@ -276,8 +291,8 @@ def _relax_tolerance(
 
 
 def _ease_task(
-    problem: Any, kind: Kind[Any, Any], solve: MeteredSearch, progress: Progress, reachable: dict[str, Any]
-) -> tuple[list[Any], list[_Miss]]:
+    problem: ProblemBase, kind: AnyKind, solve: Solve, progress: Progress, reachable: JsonObject
+) -> tuple[list[VerifiedDesign], list[_Miss[VerifiedDesign]]]:
     """Find the largest possible share of the task by bisection, for kinds whose task can be eased.
 
     Return designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
@@ -285,7 +300,7 @@ def _ease_task(
     if kind.easing is None or kind.verify is None:
         return [], []
     reached, unreached = 0.0, 1.0
-    misses: list[_Miss] = []
+    misses: list[_Miss[VerifiedDesign]] = []
     # Bisection in the share of the required dwell.
     for n in range(MAX_APPROACHES):
         if misses and not solve.fits:
@@ -301,28 +316,25 @@ def _ease_task(
             continue
         reached = tried
         reachable.update(kind.easing.list_reached(eased))
-        verified = [design for one in found if (design := kind.verify(problem, one.mechanism)) is not None]
+        verified: list[VerifiedDesign] = [
+            design for one in found if (design := kind.verify(problem, one.mechanism)) is not None
+        ]
         sound = [design for design in verified if design.verification.passed]
         if sound:
             return sound, []
-        misses = [_Miss(one, [check for check in one.verification.checks if not check.passed]) for one in verified]
+        misses = [_Miss(design, design.verification.failures) for design in verified]
     return [], misses
 
 
-def _list_failed(problem: ProblemBase, solve: MeteredSearch, progress: Progress) -> list[_Miss]:
+def _list_failed(problem: ProblemBase, solve: Solve, progress: Progress) -> list[_Miss[VerifiedDesign]]:
     """Return the designs that were driven and fail a check."""
     asked = problem.model_copy(update={"include_failed": True, "max_designs": _limit_designs(problem)})
-    return [
-        _Miss(design, [check for check in design.verification.checks if not check.passed])
-        for design in solve(asked, progress).designs
-    ]
+    return [_Miss(design, design.verification.failures) for design in solve(asked, progress).designs]
 
 
-def _list_constraints(problem: ProblemBase) -> list[str]:
+def _list_constraints(problem: LinkageProblem) -> list[str]:
     """Return the constraints beyond a sound motion that differ from their defaults."""
-    constraints = getattr(problem, "constraints", None)
-    if not isinstance(constraints, Constraints):
-        return []
+    constraints = problem.constraints
     plain = type(constraints)()
     stated = [
         name
@@ -333,17 +345,17 @@ def _list_constraints(problem: ProblemBase) -> list[str]:
     return stated if _get_driver_zone(problem) is None else [*stated, DRIVER_PIVOT_REGION]
 
 
-def _get_driver_zone(problem: Any) -> Region | None:
+def _get_driver_zone(problem: LinkageProblem) -> Region | None:
     """Return the zone of a driver's pivot, if one is given."""
-    return problem.driver.pivot_region if _has_driver(problem) else None
+    return None if problem.driver is None else problem.driver.pivot_region
 
 
-def _drop_constraints(problem: Any, names: Sequence[str]) -> dict[str, Any]:
+def _drop_constraints(problem: LinkageProblem, names: Sequence[str]) -> dict[str, object]:
     """Return the changed fields of a problem without these constraints."""
     plain = type(problem.constraints)()
     left_out = {name: getattr(plain, name) for name in names if name != DRIVER_PIVOT_REGION}
-    fields: dict[str, Any] = {"constraints": problem.constraints.model_copy(update=left_out)}
-    if DRIVER_PIVOT_REGION in names:
+    fields: dict[str, object] = {"constraints": problem.constraints.model_copy(update=left_out)}
+    if DRIVER_PIVOT_REGION in names and problem.driver is not None:
         fields["driver_dyad"] = problem.driver.model_copy(update={"pivot_region": None})
     return fields
 
@@ -351,13 +363,15 @@ def _drop_constraints(problem: Any, names: Sequence[str]) -> dict[str, Any]:
 class _RelaxedResult(NamedTuple):
     """Designs of a problem without some of its constraints."""
 
-    designs: list[Any]
-    sound: list[Any]
-    misses: list[_Miss]
+    designs: list[DrivenDesign]
+    sound: list[DrivenDesign]
+    misses: list[_Miss[DrivenDesign]]
     complete: bool
 
 
-def _solve_relaxed(problem: Any, left_out: Sequence[str], solve: MeteredSearch, progress: Progress) -> _RelaxedResult:
+def _solve_relaxed(
+    problem: LinkageProblem, left_out: Sequence[str], solve: Solve, progress: Progress
+) -> _RelaxedResult:
     """Solve the task without these constraints."""
     # Order by the dropped quantity, so that designs close to its limit come first.
     rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
@@ -374,22 +388,22 @@ def _solve_relaxed(problem: Any, left_out: Sequence[str], solve: MeteredSearch, 
     )
 
 
-def _list_broken_constraints(miss: _Miss) -> list[str]:
+def _list_broken_constraints(miss: _Miss[DrivenDesign]) -> list[str]:
     """Return the constraints that a design violates, in the order of their declaration."""
     broken = {CHECKED_CONSTRAINTS[check.name] for check in miss.broken}
     return [name for name in (*Constraints.model_fields, DRIVER_PIVOT_REGION) if name in broken]
 
 
 def _approach_limit(
-    problem: Any, misses: Sequence[_Miss], further: Continue, spent: MeteredSearch
-) -> list[_Miss] | None:
+    problem: LinkageProblem, misses: Sequence[_Miss[DrivenDesign]], further: Continue, spent: Solve | Continuation
+) -> list[_Miss[DrivenDesign]] | None:
     """Bring the nearest miss of one limit closer to it, as long as designs are found and another step fits the budget.
 
     Designs that violate nothing are returned, best first, if any are found. None if there is no such miss, or if
     ``further`` does not support the problem.
     """
     # A design that violates several limits would need a search in several directions.
-    single = sorted((miss for miss in misses if len(miss.broken) == 1), key=lambda miss: miss.distance)
+    single = _sort_misses(miss for miss in misses if len(miss.broken) == 1)
     # A class of linkage has no value to approach.
     if not single or single[0].broken[0].value is None or single[0].broken[0].limit is None:
         return None
@@ -412,7 +426,7 @@ def _approach_limit(
         # Accept only designs that improve on the nearest so far and violate no other limit.
         nearer = [miss for miss in verdicts if len(miss.broken) <= 1 and miss.distance < at_hand[0].distance]
         if nearer:
-            at_hand = sorted(nearer, key=lambda miss: miss.distance)
+            at_hand = _sort_misses(nearer)
             if not at_hand[0].broken:
                 return [miss for miss in at_hand if not miss.broken]
             reached = at_hand[0].broken[0].value or 0.0
@@ -425,11 +439,11 @@ def _ignore_progress(_fraction: float, _message: str) -> None:
     pass
 
 
-def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
+def _replace_limit(problem: LinkageProblem, check: str, limit: float) -> dict[str, object] | None:
     """Return the changed fields of a problem with another limit for a check; None if the check has no limit."""
     constraints: Constraints = problem.constraints
     lengths = constraints.link_length
-    update: dict[str, Any]
+    update: dict[str, object]
     match check:
         case "transmission_angle":
             update = {"min_transmission_angle": limit}
@@ -444,7 +458,7 @@ def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | N
             update = {check: getattr(constraints, check).widen(limit)}
         case name if name in FORCE_NAMES:
             update = {f"max_{name}": limit}
-        case "driver_pivot_region":
+        case "driver_pivot_region" if problem.driver is not None and problem.driver.pivot_region is not None:
             wider = problem.driver.pivot_region.widen(limit)
             return {"driver_dyad": problem.driver.model_copy(update={"pivot_region": wider})}
         case _:
@@ -452,18 +466,17 @@ def _replace_limit(problem: Any, check: str, limit: float) -> dict[str, Any] | N
     return {"constraints": constraints.model_copy(update=update)}
 
 
-def check_constraints_of_design(problem: Any, design: Any) -> _Miss:
+def check_constraints_of_design(problem: LinkageProblem, design: DrivenDesign) -> _Miss[DrivenDesign]:
     """Check a design of a relaxed problem against the original constraints, measured on the answer."""
     joints, ground = design.mechanism.skeleton.joints, _list_ground_joints(design)
     # P and the driver's joints are not subject to the zones of the linkage's pivots.
-    apart = {"P", *(DRIVER_JOINTS if _has_driver(problem) else ())}
+    apart = {"P", *(() if problem.driver is None else DRIVER_JOINTS)}
     fixed = [complex(*joints[name]) for name in ground if name not in apart]
     moving = [complex(*place) for name, place in joints.items() if name not in {*ground, *apart}]
-    measures: dict[str, Any] = {name: getattr(design.metrics, name, None) for name in Measures._fields}
-    measures["lengths"] = list_link_lengths(design.mechanism)
+    measures = Measures.from_metrics(design.metrics, list_link_lengths(design.mechanism))
     # The motion itself has been verified already, in the kind's own checks.
     stated = problem.constraints.model_copy(update={"same_branch": False, "in_order": False})
-    judged = check_constraints(stated, Measures(**measures), fixed, moving)
+    judged = check_constraints(stated, measures, fixed, moving)
     zone = _get_driver_zone(problem)
     if zone is not None:
         judged.append(check_zone("driver_pivot_region", zone, [complex(*joints["O6"])]))
@@ -472,12 +485,12 @@ def check_constraints_of_design(problem: Any, design: Any) -> _Miss:
     checks = [check for check in design.verification.checks if check.name not in names] + judged
     verified = design.model_copy(update={"verification": Verification.from_checks(checks)})
     if problem.constraints.force_limits:
-        verified = add_force_checks(problem.constraints, add_forces(problem, verified))
+        verified = check_forces(problem, verified)
         judged += [check for check in verified.verification.checks if check.name in problem.constraints.force_limits]
     return _Miss(verified, [check for check in judged if not check.passed], _measure_task(problem))
 
 
-def _list_ground_joints(design: Any) -> list[str]:
+def _list_ground_joints(design: DrivenDesign) -> list[str]:
     return next(link.joints for link in design.mechanism.skeleton.links if link.name == "ground")
 
 
@@ -494,22 +507,16 @@ def _choose_unit(check: Check, size: float) -> float:
     return abs(check.limit or 0.0) or (size if check.dimension == LENGTH else 1.0)
 
 
-def _measure_task(problem: Any) -> float:
+def _measure_task(problem: LinkageProblem) -> float:
     """Return the size of a task in length units; for a task without size, that of its zones."""
-    size = getattr(problem, "task_size", None)
-    # Gears and functions have no size, but may have zones.
-    if size is not None:
-        return float(size)
+    # Functions, for example, have no size, but may have zones.
+    if problem.task_size is not None:
+        return problem.task_size
     zones = problem.constraints.fixed_pivot_region, problem.constraints.moving_pivot_region
     spans = [math.hypot(zone.x[1] - zone.x[0], zone.y[1] - zone.y[0]) for zone in zones if zone is not None]
     return max(spans, default=0.0) or 1.0
 
 
-def _has_driver(problem: Any) -> bool:
-    """Return whether a driver dyad is requested."""
-    return getattr(problem, "driver", None) is not None
-
-
-def _limit_designs(problem: Any) -> int:
+def _limit_designs(problem: ProblemBase) -> int:
     """Return the maximum number of designs of a relaxed problem."""
-    return MAX_DRIVEN if _has_driver(problem) else MAX_DESIGNS
+    return MAX_DRIVEN if isinstance(problem, LinkageProblem) and problem.driver is not None else MAX_DESIGNS

@@ -5,7 +5,7 @@ A new kind is one import and one entry here; see docs/development/adding-a-kind.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Union
+from typing import TYPE_CHECKING, Annotated, Union
 
 from pydantic import ConfigDict, Discriminator, Tag, TypeAdapter
 
@@ -30,10 +30,11 @@ from synthesis.kinds import (
     straight_line,
     train_series,
 )
-from synthesis.model.kind import Kind
+from synthesis.model.json_object import JsonObject
+from synthesis.model.kind import AnyKind
 from synthesis.model.problem import ProblemBase
 
-KINDS: dict[str, Kind[Any, Any]] = {
+KINDS: dict[str, AnyKind] = {
     folder.KIND.name: folder.KIND
     for folder in (
         motion,
@@ -60,8 +61,10 @@ KINDS: dict[str, Kind[Any, Any]] = {
 """Every kind of problem by name, in display order."""
 
 
-def _tag_kind(statement: Any) -> str | None:
-    kind = statement.get("kind") if isinstance(statement, dict) else getattr(statement, "kind", None)
+def _tag_kind(statement: object) -> str | None:
+    kind = statement.get("kind") if isinstance(statement, dict) else None
+    if isinstance(statement, ProblemBase):
+        kind = statement.kind
     # Brackets keep the tag apart from field names in error locations.
     return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
 
@@ -82,17 +85,17 @@ else:
     """Any problem, identified by its field ``kind``."""
 
 
-def parse_problem(statement: dict[str, Any]) -> Problem:
+def parse_problem(statement: JsonObject) -> Problem:
     """Parse a JSON-like statement into a problem; raise pydantic's ValidationError for an ill-formed one."""
     return _PROBLEM.validate_python(statement)
 
 
-def list_examples(kind: str) -> list[dict[str, Any]]:
+def list_examples(kind: str) -> list[JsonObject]:
     """Return the runnable examples of a kind, as a client would post them."""
     return KINDS[kind].examples
 
 
-def get_first_example(kind: str) -> dict[str, Any]:
+def get_first_example(kind: str) -> JsonObject:
     """Return the first example of a kind."""
     return list_examples(kind)[0]
 

@@ -174,6 +174,67 @@ def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> No
     assert 0 < len(for_others) <= MOST_EDITED
 
 
+ASKED_BY_NAME = {
+    # The value is whatever a client wrote, before it is a model, or the annotation of a field.
+    "synthesis/analyses/input_motion.py",
+    "synthesis/kinds/dwell/problem.py",
+    "synthesis/kinds/train_series/units.py",
+    "synthesis/model/dimension.py",
+    # Subclasses declare these fields, each with a type of its own.
+    "synthesis/model/problem.py",
+    "synthesis/model/gears/stages.py",
+}
+"""Modules that ask for an attribute of which the value may know nothing."""
+
+
+def calls(path: Path, *names: str) -> list[ast.Call]:
+    """The calls of functions and methods with these names in a file."""
+    return [
+        node
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Call)
+        and (
+            (isinstance(node.func, ast.Name) and node.func.id in names)
+            or (isinstance(node.func, ast.Attribute) and node.func.attr in names)
+        )
+    ]
+
+
+def test_problems_and_designs_are_asked_by_their_models_and_protocols() -> None:
+    """``getattr`` with a fixed name and a default hides what a value must have; its type says so."""
+    asking = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "synthesis").rglob("*.py")
+        for call in calls(path, "getattr")
+        if isinstance(call.args[1], ast.Constant) or (len(call.args) > 2 and ast.unparse(call.args[0]) == "problem")
+    }
+    assert asking == ASKED_BY_NAME
+
+
+def test_designs_are_sorted_in_one_module() -> None:
+    """A key that reads the metrics or the checks of a design belongs to sort_designs or select_best."""
+    sorting = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "synthesis").rglob("*.py")
+        for call in calls(path, "sorted", "sort", "min", "max")
+        for keyword in call.keywords
+        if keyword.arg == "key" and re.search(r"\bdesign\b|\.metrics\b|\.verification\b", ast.unparse(keyword.value))
+    }
+    assert sorting == {"synthesis/results/ranking.py"}
+
+
+def test_one_module_decides_what_is_measured() -> None:
+    """The measurements of finished designs are imported by the module that decides on them, and for limits by those
+    that search below them."""
+    measuring = {"forces.add_forces", "layout.add_layout", "manufacture.add_manufacture", "manufacture.check_yield"}
+    importing = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "synthesis").rglob("*.py")
+        if imports(path) & {f"synthesis.results.{name}" for name in measuring}
+    }
+    assert importing == {"synthesis/results/measurement.py"}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("module", ["synthesis.registry", "service.server.app"])
 def test_who_parses_problems_waits_for_no_solver(module: str) -> None:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from itertools import product as combined
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -312,10 +312,9 @@ def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarM
     return replace_dimensions(slid if task.guides else remove_coupler_point(slid), row)
 
 
-Mechanism = TypeVar("Mechanism", FourbarMechanism, SliderCrankMechanism)
-
-
-def replace_dimensions(mechanism: Mechanism, row: Real) -> Mechanism:
+def replace_dimensions(
+    mechanism: FourbarMechanism | SliderCrankMechanism, row: Real
+) -> FourbarMechanism | SliderCrankMechanism:
     """Return a mechanism with exactly the dimensions ``row``; its joints agree with them to rounding."""
     at = [float(value) for value in row]
     update: dict[str, object]

@@ -26,9 +26,10 @@ def build_drive(mechanism: Any) -> CrankCourse:
         ratio = mechanism.crank_radius / mechanism.center_distance
     # A crank rounded to slightly less than the minimum still reaches the slots: use the minimum.
     drive = Geneva(mechanism.type, mechanism.stations, max(ratio, drive.ratio))
-    link = getattr(mechanism, "drag_link", None)
-    if link is None:
+    # Only plane drives have a drag link.
+    if mechanism.type == "geneva_spherical" or mechanism.drag_link is None:
         return CrankCourse(drive)
+    link = mechanism.drag_link
     # Direction of the crank in the middle of the index: towards an external wheel's axis, away from the others'.
     towards = 0.0 if mechanism.type == "geneva_external" else math.pi
     lengths = DragLink(link.input / link.ground, link.coupler / link.ground, link.output / link.ground)

@@ -213,7 +213,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
     nothing of a plate has no finite mass.
     """
     first_one = _select_first(mechanism)
-    constant = all(getattr(load.force or load.torque, "constant", None) is not None for load in block.loads)
+    constant = all(load.is_constant for load in block.loads)
     # Variable loads, springs and friction depend on the motion of each design and are not vectorized.
     if not constant or block.springs or block.friction is not None or any(_find_name_errors(block, first_one)):
         return None

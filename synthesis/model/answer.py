@@ -45,6 +45,11 @@ class Verification(Answer):
     passed: bool
     checks: list[Check]
 
+    @property
+    def failures(self) -> list[Check]:
+        """The failed checks."""
+        return [check for check in self.checks if not check.passed]
+
     @classmethod
     def from_checks(cls, checks: list[Check]) -> Self:
         """Return the verification that consists of these checks."""
@@ -79,6 +84,11 @@ class Gap(Answer):
     limit: float | None = optional_field()
     dimension: Dimension | None = optional_field("Dimension of value and limit; left out for a pure number.")
 
+    @classmethod
+    def from_check(cls, check: Check) -> Self:
+        """Return the gap of a failed check."""
+        return cls(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
+
 
 class Reachable(Answer):
     """Best values found while all other constraints hold; constraints that can be satisfied are left out."""
@@ -109,3 +119,7 @@ class Result(Answer, Generic[Design]):
     nearest_miss: NearestMiss[Design] | None = Field(
         default=None, description="The nearest miss if no design passed; null otherwise."
     )
+
+
+AnyResult = Result[Any]
+"""Answer to a problem of any kind."""

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
-from synthesis.model.answer import Search, Verification
+from synthesis.model.answer import Search
 from synthesis.model.counting import format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.problem import ProblemBase
-from synthesis.results.constraints import verify_all_constraints
+from synthesis.model.protocols import VerifiedDesign
+from synthesis.results.measurement import check_shared_constraints
 from synthesis.verification.shared_constraints import check_workspace_of_design
 
 DEFECT_REASONS = {
@@ -33,14 +34,6 @@ NUMERICAL_REASONS = {"degenerate", "residual", "cannot_be_driven"}
 
 OUTRANKED_REASON = "outranked"
 """Reason of sound candidates that are not driven or not listed because better ones are."""
-
-
-class VerifiedDesign(Protocol):
-    """A design with its checks."""
-
-    @property
-    def verification(self) -> Verification:
-        """Checks of the design."""
 
 
 Candidate = TypeVar("Candidate")
@@ -140,7 +133,7 @@ class CandidateLog(Generic[Design]):
             return verdict
         # Common constraints are expensive (forces, planes, yield): only designs that passed everything else pay.
         if verdict.verification.passed:
-            judged = verify_all_constraints(self.stated, verdict)
+            judged = check_shared_constraints(self.stated, verdict)
             if judged is None:
                 return self._undriven
             verdict = judged
@@ -148,7 +141,7 @@ class CandidateLog(Generic[Design]):
             self.passed.append(verdict)
             return ""
         self.failed.append(verdict)
-        return self.find_reason([check.name for check in verdict.verification.checks if not check.passed])
+        return self.find_reason([check.name for check in verdict.verification.failures])
 
     def count(self, reason: str) -> None:
         """Count a candidate by its reason of rejection; an empty reason counts it as accepted."""

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-from synthesis.model.answer import Check, Result, Verification
+from synthesis.model.answer import AnyResult, Check, Verification
 from synthesis.model.dimension import FORCE, POWER, TORQUE, Dimension
 from synthesis.model.dynamics.bodies import BodySpec, Shape
 from synthesis.model.dynamics.peak_forces import DesignForces, ForcePeak, JointForcePeak, PowerPeak, TorquePeak
 from synthesis.model.dynamics.request import DesignDynamics, LengthUnit, LoadedLinkage
+from synthesis.model.json_object import JsonObject
+from synthesis.model.linkage.answer import MotionMetrics
 from synthesis.model.linkage.problem import Constraints, Force, LinkageProblem
-from synthesis.model.problem import ProblemBase
+from synthesis.model.protocols import DrivenDesign, LinkageMeasures
 from synthesis.verification.checks import check_maximum
 from synthesis.verification.reconstruction import rebuild_mechanism
 
-Design = TypeVar("Design", bound=Any)
+Design = TypeVar("Design", bound=DrivenDesign)
 
 STEP_COUNT = 72
 """Number of steps of a motion, between which peaks are refined."""
@@ -36,13 +38,8 @@ DIMENSIONS: Mapping[Force, Dimension | None] = {
 """Dimension of each limit on forces."""
 
 
-def verify_forces(problem: ProblemBase, design: Design) -> Design:
-    """Return a design with its forces and their checks, if it passed all other checks and forces are limited."""
-    if not isinstance(problem, LinkageProblem) or not problem.constraints.force_limits or problem.dynamics is None:
-        return design
-    # Forces are expensive: a design that failed already does not need them.
-    if not design.verification.passed:
-        return design
+def check_forces(problem: LinkageProblem, design: Design) -> Design:
+    """Return a design with its forces and the checks of the limited ones."""
     return add_force_checks(problem.constraints, add_forces(problem, design))
 
 
@@ -61,28 +58,16 @@ def add_force_checks(constraints: Constraints, design: Design) -> Design:
             if value is None
             else check_maximum(name, value, limit, DIMENSIONS[name])
         )
-    checked: Design = design.model_copy(update={"verification": Verification.from_checks(checks)})
-    return checked
+    return design.model_copy(update={"verification": Verification.from_checks(checks)})
 
 
-def get_peak(design: Any, name: str) -> float | None:
+def get_peak(design: DrivenDesign, name: str) -> float | None:
     """Return the peak that the limit on ``name`` refers to; None if unknown."""
     found = None if design.forces is None else getattr(design.forces, name)
     return found if found is None or isinstance(found, float) else float(found.max)
 
 
-def add_forces_to_designs(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """Return an answer with the forces of all its designs and of the nearest miss; unchanged without `dynamics`."""
-    if problem.dynamics is None:
-        return result
-    miss = result.nearest_miss
-    if miss is not None:
-        miss = miss.model_copy(update={"design": add_forces(problem, miss.design)})
-    designs = [add_forces(problem, design) for design in result.designs]
-    return result.model_copy(update={"designs": designs, "nearest_miss": miss})
-
-
-def report_unknown_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+def report_unknown_forces(problem: LinkageProblem, result: AnyResult) -> AnyResult:
     """Add the reason why the nearest miss has no forces to the summary, if forces are limited."""
     miss = result.nearest_miss
     forces = None if miss is None else miss.design.forces
@@ -95,8 +80,7 @@ def add_forces(problem: LinkageProblem, design: Design) -> Design:
     """Return a design with its forces; unchanged if it already has them."""
     if problem.dynamics is None or design.forces is not None:
         return design
-    measured: Design = design.model_copy(update={"forces": _compute_forces(problem, problem.dynamics, design)})
-    return measured
+    return design.model_copy(update={"forces": _compute_forces(problem, problem.dynamics, design)})
 
 
 class ForcesUnknownError(ValueError):
@@ -120,7 +104,7 @@ class DriveSetup(NamedTuple):
     speed: float
 
 
-def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT) -> DriveSetup:
+def prepare_drive(dynamics: DesignDynamics, design: DrivenDesign, steps: int = STEP_COUNT) -> DriveSetup:
     """Prepare a design for a whole cycle if its input rotates fully, otherwise for its verified range.
 
     Parameters
@@ -160,7 +144,7 @@ def prepare_drive(dynamics: DesignDynamics, design: Any, steps: int = STEP_COUNT
     return DriveSetup(mechanism, block, at, speed if slides else speed * math.tau / 60.0)
 
 
-def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: Any) -> DesignForces:
+def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: DrivenDesign) -> DesignForces:
     # A local import: only problems with this block need the module.
     from synthesis.analyses.linkages.dynamics import UndeterminedForcesError, find_force_peaks
 
@@ -193,7 +177,9 @@ def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: A
     )
 
 
-def compute_forces_over_motion(dynamics: DesignDynamics, design: Any, unit: LengthUnit, steps: int) -> dict[str, Any]:
+def compute_forces_over_motion(
+    dynamics: DesignDynamics, design: DrivenDesign, unit: LengthUnit, steps: int
+) -> JsonObject:
     """Analyze a design's motion with all forces, as :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
 
     Parameters
@@ -255,19 +241,21 @@ def apply_link_shape(dynamics: DesignDynamics, links: Mapping[str, Sequence[str]
 def _fit_shape_to_link(shape: Shape, joints: Sequence[str]) -> Shape:
     """Fit the shape of all links to one link: keep the holes of its own joints, and the ends only for a bar."""
     holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
-    update: dict[str, Any] = {"holes": holes}
+    update: dict[str, object] = {"holes": holes}
     # A link with more than two joints is a hull, which has no square ends.
     if len(joints) != 2:
         update |= {"ends": "round", "overhang": 0.0}
     return shape.model_copy(update=update)
 
 
-def _list_inputs(block: DesignDynamics, mechanism: Mechanism, metrics: Any, steps: int) -> NDArray[np.float64] | None:
+def _list_inputs(
+    block: DesignDynamics, mechanism: Mechanism, metrics: LinkageMeasures, steps: int
+) -> NDArray[np.float64] | None:
     """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else as verified."""
     from synthesis.mechanisms.courses import find_period_turns
 
     # Steering linkages do not measure this; their input never rotates fully.
-    turns_through = getattr(metrics, "full_rotation", False)  # a steering linkage is not asked to
+    turns_through = isinstance(metrics, MotionMetrics) and metrics.full_rotation
     if turns_through and not mechanism.has_slide_input:
         turns = find_period_turns(block, mechanism)
         # 0 means that motion and loads never repeat together.

@@ -9,15 +9,22 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from synthesis.model.answer import Result, Verification
+from synthesis.model.answer import AnyResult, Verification
 from synthesis.model.counting import format_count
+from synthesis.model.linkage.answer import LinkageMetrics
 from synthesis.model.linkage.problem import FORCE_NAMES, LinkageProblem
 from synthesis.model.problem import ProblemBase
+from synthesis.model.protocols import DrivenDesign
 from synthesis.results.forces import add_force_checks, get_peak
+from synthesis.results.ranking import sort_designs
 
 Problem = TypeVar("Problem", bound=ProblemBase)
+Design = TypeVar("Design", bound=DrivenDesign)
+
+Measure = Callable[[DrivenDesign], float | None]
+"""Returns the measured quantity of a design; None if unknown."""
 
 MAX_SEARCHES, LIMIT_FACTOR, MAX_SEARCH_TIME_S = 4, 0.8, 4.0
 """For orders by a force: maximum number of further searches, limit of each as a share of the smallest force so far, and
@@ -46,8 +53,8 @@ def widen_search(problem: Problem) -> Problem:
 
 
 def search_below_limits(
-    problem: LinkageProblem, result: Result[Any], solve: Callable[[Any], Result[Any]]
-) -> Result[Any]:
+    problem: LinkageProblem, result: AnyResult, solve: Callable[[LinkageProblem], AnyResult]
+) -> AnyResult:
     """Add designs with smaller forces to an answer that is ordered by a force, by further searches.
 
     Each search limits the force to a share of the smallest one so far, because a limit guides a search and an order
@@ -82,7 +89,7 @@ def search_below_limits(
     return found
 
 
-def _restore_checks(problem: LinkageProblem, design: Any) -> Any:
+def _restore_checks(problem: LinkageProblem, design: Design) -> Design:
     """Replace the force checks of a design by those of the original limits."""
     # Checks against the narrower limit would mark good designs as failed.
     checks = [check for check in design.verification.checks if check.name not in FORCE_NAMES]
@@ -90,7 +97,7 @@ def _restore_checks(problem: LinkageProblem, design: Any) -> Any:
     return add_force_checks(problem.constraints, bare)
 
 
-def rank_by_measure(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+def rank_by_measure(problem: LinkageProblem, result: AnyResult) -> AnyResult:
     """Sort the measured designs of an answer to :func:`widen_search`, and keep the requested number.
 
     Designs are sorted by increasing value, but by decreasing yield; equal ones keep their order. Designs without a
@@ -102,36 +109,37 @@ def rank_by_measure(problem: LinkageProblem, result: Result[Any]) -> Result[Any]
     return result.model_copy(update={"designs": designs, "summary": result.summary + told})
 
 
-def sort_by_measure(problem: LinkageProblem, designs: Sequence[Any]) -> list[Any]:
+def sort_by_measure(problem: LinkageProblem, designs: Sequence[Design]) -> list[Design]:
     """Return measured designs in the order of :func:`rank_by_measure`."""
     measure = _select_measure(problem)
     sense = -1.0 if problem.rank_by == "yield" else 1.0
 
-    def compute_sort_key(design: Any) -> tuple[bool, float]:
+    def get_sort_key(design: Design) -> float:
         measured = measure(design)
-        # Failed designs last, then those without a value.
-        return not design.verification.passed, math.inf if measured is None else sense * measured
+        # Designs without a value follow all others that passed.
+        return math.inf if measured is None else sense * measured
 
-    return sorted(designs, key=compute_sort_key)
+    return sort_designs(designs, get_sort_key)
 
 
-def _select_measure(problem: LinkageProblem) -> Callable[[Any], float | None]:
+def _select_measure(problem: LinkageProblem) -> Measure:
     return _MEASURES.get(problem.rank_by) or partial(get_peak, name=problem.rank_by)
 
 
-def _get_planes(design: Any) -> float | None:
-    return float(design.layout.count) if design.layout.buildable else None
+def _get_planes(design: DrivenDesign) -> float | None:
+    return float(design.layout.count) if design.layout is not None and design.layout.buildable else None
 
 
-def _get_yield(design: Any) -> float | None:
-    return None if design.metrics.yield_ is None else float(design.metrics.yield_.value)
+def _get_yield(design: DrivenDesign) -> float | None:
+    metrics = design.metrics
+    return metrics.yield_.value if isinstance(metrics, LinkageMetrics) and metrics.yield_ is not None else None
 
 
-_MEASURES: Mapping[str, Callable[[Any], float | None]] = {"planes": _get_planes, "yield": _get_yield}
+_MEASURES: Mapping[str, Measure] = {"planes": _get_planes, "yield": _get_yield}
 """Measures of the orders that are not forces."""
 
 
-def _describe_order(order: str, designs: list[Any], measure: Callable[[Any], float | None]) -> str:
+def _describe_order(order: str, designs: Sequence[DrivenDesign], measure: Measure) -> str:
     """Describe the order and the range of its values in a sentence."""
     known = sorted({value for design in designs if (value := measure(design)) is not None})
     what = order.replace("_", " ")

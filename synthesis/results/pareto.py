@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from synthesis.model.linkage.answer import ERROR_FIELDS, Front
+from synthesis.model.protocols import DrivenDesign, LinkageMeasures
 from synthesis.results.ranking import RESIDUAL_ROUNDING
 
 
-def _find_error_field(metrics: Any) -> str | None:
-    return next((field for field in ERROR_FIELDS if getattr(metrics, field, None) is not None), None)
+def _find_error_field(metrics: LinkageMeasures) -> str | None:
+    return next((field for field in ERROR_FIELDS if hasattr(metrics, field)), None)
 
 
-def measure_error(design: Any) -> float:
+def measure_error(design: DrivenDesign) -> float:
     """Return the error of a design as measured by its kind; 0 if all designs of the kind are exact."""
     field = _find_error_field(design.metrics)
     return 0.0 if field is None else float(getattr(design.metrics, field))
 
 
-def pareto_front(designs: Sequence[Any]) -> Front | None:
+def pareto_front(designs: Sequence[DrivenDesign]) -> Front | None:
     """Return the Pareto front of the designs of an answer, ignoring designs that fail a check.
 
     Parameters

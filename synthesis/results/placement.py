@@ -9,6 +9,7 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import Skeleton
 from synthesis.model.linkage.problem import Constraints, Region
 from synthesis.model.linkage.zones import EDGE_TOLERANCE
@@ -23,12 +24,12 @@ class LinkageMechanism(Protocol):
         """Joints and links at the first target."""
         ...
 
-    def model_dump(self) -> dict[str, Any]:
+    def model_dump(self) -> JsonObject:
         """Return the fields by name."""
         ...
 
     @classmethod
-    def model_validate(cls, obj: Any) -> Self:
+    def model_validate(cls, obj: object) -> Self:
         """Build a mechanism of this type from its fields."""
         ...
 
@@ -135,7 +136,7 @@ def transform_mechanism(mechanism: Mechanism, origin: complex, along: complex) -
         there = origin + along * complex(*point)
         return there.real, there.imag
 
-    def transform_line(of: dict[str, Any]) -> dict[str, Any]:
+    def transform_line(of: JsonObject) -> JsonObject:
         # A slide of an inverted linkage is given in its link's own frame, without a point, and is not transformed.
         return {**of, "point": transform_point(of["point"]), "angle": of["angle"] + turn} if "point" in of else of
 

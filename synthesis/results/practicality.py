@@ -8,12 +8,16 @@ slightly closer to the task but cannot be built is no better answer.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
+from synthesis.model.linkage.answer import MotionMetrics
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import Statement
+from synthesis.model.protocols import DrivenDesign
 from synthesis.results.pareto import measure_error
-from synthesis.results.ranking import RESIDUAL_ROUNDING
+from synthesis.results.ranking import RESIDUAL_ROUNDING, move_to_front
+
+Design = TypeVar("Design", bound=DrivenDesign)
 
 MIN_TRANSMISSION_ANGLE = 30.0
 """Minimum transmission angle of a practical design, degrees."""
@@ -31,27 +35,28 @@ ERROR_BAND = 2.0
 """Factor of the smallest error up to which errors make no practical difference."""
 
 
-class OrderedDesigns(NamedTuple):
+class OrderedDesigns(NamedTuple, Generic[Design]):
     """Sorted designs and a remark on their order; empty if the first design is practical anyway."""
 
-    designs: list[Any]
+    designs: list[Design]
     remark: str
 
 
-def has_even_links(design: Any) -> bool:
+def has_even_links(design: DrivenDesign) -> bool:
     """Return whether a passed design transmits force well and has a moderate link ratio."""
     measured = design.metrics
     transmits = measured.min_transmission_angle >= MIN_TRANSMISSION_ANGLE * (1.0 - CONSTRAINT_TOLERANCE)
     return bool(transmits and measured.link_ratio <= MAX_LINK_RATIO * (1.0 + CONSTRAINT_TOLERANCE))
 
 
-def is_usable(design: Any) -> bool:
+def is_usable(design: DrivenDesign) -> bool:
     """Return whether a design is practical: also without a link that is far longer than the task."""
-    reach = getattr(design.metrics, "reach", None)
+    metrics = design.metrics
+    reach = metrics.reach if isinstance(metrics, MotionMetrics) else None
     return has_even_links(design) and (reach is None or reach <= MAX_REACH * (1.0 + CONSTRAINT_TOLERANCE))
 
 
-def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> OrderedDesigns:
+def sort_usable_first(problem: LinkageProblem, designs: Sequence[Design]) -> OrderedDesigns[Design]:
     """Move the practical designs whose error is close to the smallest one before all others.
 
     The order is kept if the client gave a limit of transmission angle or link ratio, or another order.
@@ -62,7 +67,7 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     if limited or not _is_default(problem, "rank_by") or not passed or is_usable(passed[0]):
         return OrderedDesigns(list(designs), "")
 
-    def measure_design_error(design: Any) -> float:
+    def measure_design_error(design: Design) -> float:
         # Each kind names its own error; otherwise use the error of the Pareto front.
         measure = problem.error_measure
         return measure_error(design) if measure is None else float(getattr(design.metrics, measure))
@@ -81,7 +86,7 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     first = [design for design in near if is_usable(design)]
     if first:
         return OrderedDesigns(
-            _move_to_front(first, designs),
+            move_to_front(first, designs),
             f" Designs with {practice} and {compact} are listed first.",
             # Without a fully practical design, accept a long link before a poor transmission angle.
         )
@@ -92,15 +97,8 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordere
     if not first:
         return OrderedDesigns(list(designs), f" {missing} has {practice}.")
     return OrderedDesigns(
-        _move_to_front(first, designs), f"{told}; designs with such an angle and ratio are listed first."
+        move_to_front(first, designs), f"{told}; designs with such an angle and ratio are listed first."
     )
-
-
-def _move_to_front(first: Sequence[Any], designs: Sequence[Any]) -> list[Any]:
-    """Return the designs with ``first`` moved to the front."""
-    # Compare by identity: designs with equal values are still different entries.
-    chosen = {id(design) for design in first}
-    return [*first, *(design for design in designs if id(design) not in chosen)]
 
 
 def _is_default(statement: Statement, name: str) -> bool:

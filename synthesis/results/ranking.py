@@ -1,4 +1,4 @@
-"""Ranking of sound designs, and removal of designs that are nearly equal.
+"""Order of designs: the one place that sorts them, by keys of their kind; and removal of designs that are nearly equal.
 
 docs/methods/ranking.md explains the orders.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.compiling import njit
-from synthesis.results.candidate_log import VerifiedDesign
+from synthesis.model.protocols import VerifiedDesign
 
 Ranked = TypeVar("Ranked", bound=VerifiedDesign)
 
@@ -125,8 +125,28 @@ def rank_designs(
         Key that decides between equal designs; by default the quality.
     """
     key = {**SORT_KEYS, **(own or {})}[rank_by]
+    return sort_designs(designs, *([group] if group else []), key, ties)
 
-    def compute_sort_key(design: Ranked) -> tuple[bool, float, float, float]:
-        return not design.verification.passed, group(design) if group else 0.0, key(design), ties(design)
 
-    return sorted(designs, key=compute_sort_key)
+def sort_designs(designs: Iterable[Ranked], *keys: Callable[[Ranked], float]) -> list[Ranked]:
+    """Sort designs by several keys, smallest first, the first key first; designs that fail a check come last.
+
+    Equal designs keep their order.
+    """
+    return sorted(designs, key=lambda design: (not design.verification.passed, *_list_values(design, keys)))
+
+
+def select_best(designs: Iterable[Ranked], *keys: Callable[[Ranked], float]) -> Ranked:
+    """Return the design with the smallest keys, the first key first, whether it passed or not."""
+    return min(designs, key=lambda design: _list_values(design, keys))
+
+
+def _list_values(design: Ranked, keys: Iterable[Callable[[Ranked], float]]) -> list[float]:
+    return [key(design) for key in keys]
+
+
+def move_to_front(first: Sequence[Ranked], designs: Sequence[Ranked]) -> list[Ranked]:
+    """Return the designs with ``first`` moved to the front."""
+    # Compare by identity: designs with equal values are still different entries.
+    chosen = {id(design) for design in first}
+    return [*first, *(design for design in designs if id(design) not in chosen)]

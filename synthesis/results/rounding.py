@@ -15,16 +15,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
+from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
-from synthesis.model.linkage.answer import ExactDesign
+from synthesis.model.linkage.answer import ExactDesign, FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.manufacture.request import RequiredTargets
-from synthesis.results.constraints import verify_all_constraints
-from synthesis.results.manufacture import describe_exact_design, find_branch_range, measure_target_errors
+from synthesis.model.protocols import ManufacturableDesign
+from synthesis.results.manufacture import describe_exact_design, find_branch_range
+from synthesis.results.measurement import check_shared_constraints
+from synthesis.results.ranking import select_best
 from synthesis.verification.checks import check_maximum
 
 Nearly = Callable[[Any, Any, Any], Any]
+"""The type of :attr:`synthesis.model.kind.Kind.nearly` of a kind that is not known."""
 
 ON_GRID = "on_grid"
 """Reason of rejection if no linkage on the grid near a design can be driven."""
@@ -44,11 +47,11 @@ MAX_ERROR_GROWTH = 2.0
 class _RoundedDesign(NamedTuple):
     """Best linkage on the grid near a design, and its reason of rejection; empty if it passed."""
 
-    design: Any
+    design: ManufacturableDesign | None
     reason: str
 
 
-def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tolerance: Nearly | None) -> Result[Any]:
+def round_designs(problem: LinkageProblem, result: AnyResult, verify_with_tolerance: Nearly | None) -> AnyResult:
     """Return an answer with designs on the requested grid, each with its exact design.
 
     Parameters
@@ -67,14 +70,14 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
     failed = [design for design in result.designs if not design.verification.passed]
     if not passed:
         return result
-    found: list[Any] = []
+    found: list[ManufacturableDesign] = []
     missed: list[_RoundedDesign] = []
     for design in passed:
         # Designs are rounded in order, so the first ones found are the best.
         if len(found) >= problem.max_designs:
             break
         rounded = _round_design(problem, design, verify_with_tolerance)
-        if rounded.reason:
+        if rounded.design is None or rounded.reason:
             missed.append(rounded)
         else:
             found.append(rounded.design)
@@ -102,7 +105,9 @@ def round_designs(problem: LinkageProblem, result: Result[Any], verify_with_tole
     )
 
 
-def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: Nearly) -> _RoundedDesign:
+def _round_design(
+    problem: LinkageProblem, design: ManufacturableDesign, verify_with_tolerance: Nearly
+) -> _RoundedDesign:
     """Find the best linkage on the grid near a design."""
     # A local import: only problems with this block need the module.
     from synthesis.manufacture.grid import build_mechanism, find_nearest_on_grid, replace_dimensions
@@ -120,9 +125,13 @@ def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: N
     # Candidates are sorted by error: the first that passes is the most accurate one.
     for n in range(min(len(near.rows), MAX_DRIVEN)):
         mechanism = build_mechanism(linkage, near, n)
-        driven = None if mechanism is None else verify_with_tolerance(problem, design, mechanism)
+        driven: ManufacturableDesign | None = (
+            None if mechanism is None else verify_with_tolerance(problem, design, mechanism)
+        )
         if driven is None:
             continue
+        # These are the types that have a grid.
+        assert isinstance(driven.mechanism, FourbarMechanism | SliderCrankMechanism)
         checks = [*_check_quality(problem, driven, exact), *driven.verification.checks]
         rounded = driven.model_copy(
             update={
@@ -134,32 +143,29 @@ def _round_design(problem: LinkageProblem, design: Any, verify_with_tolerance: N
         )
         if rounded.verification.passed:
             judged += 1
-            rounded = verify_all_constraints(problem, rounded)
-            if rounded is None:
+            verified = check_shared_constraints(problem, rounded)
+            if verified is None:
                 # Driven, but no mechanism can be rebuilt from the rounded dimensions.
                 continue
-        broken = [check.name for check in rounded.verification.checks if not check.passed]
+            rounded = verified
+        broken = rounded.verification.failures
         if not broken:
             return _RoundedDesign(rounded, "")
         # Keep the most accurate failure for the nearest miss.
         if first.design is None:
-            first = _RoundedDesign(rounded, broken[0])
+            first = _RoundedDesign(rounded, broken[0].name)
         # The common constraints are expensive, so limit the number of designs that reach them.
         if judged >= MAX_VERIFIED:
             break
     return first
 
 
-def _check_quality(problem: LinkageProblem, design: Any, exact: ExactDesign) -> list[Check]:
+def _check_quality(problem: LinkageProblem, design: ManufacturableDesign, exact: ExactDesign) -> list[Check]:
     """Check the errors at targets without a tolerance of their own against the permitted errors."""
-    error, angle = measure_target_errors(problem, design)
     held = problem.build_required_targets(design)
     own = _mark_own_tolerances(held)
-    if own is not None:
-        # Targets with their own tolerances have checks of their own.
-        free = [target for target, has in zip(design.targets, own, strict=True) if not has]
-        error = max((target.point_residual for target in free), default=None)
-        angle = max((target.angle_residual for target in free if target.angle_residual is not None), default=None)
+    # Targets with their own tolerances have checks of their own.
+    error, angle = problem.measure_target_errors(design, None if own is None else ~own)
     distance, turn = _set_error_limits(problem, held, exact)
     checks = []
     if error is not None:
@@ -196,14 +202,9 @@ def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
     known = [rounded.design for rounded in missed if rounded.design is not None]
     if not known:
         return None
-
-    def list_broken_checks(design: Any) -> list[Check]:
-        return [check for check in design.verification.checks if not check.passed]
-
     # A linkage that fails fewer checks is closer, even if its error is larger.
-    best = min(known, key=lambda design: (len(list_broken_checks(design)), design.metrics.rms_residual))
-    gaps = [
-        Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
-        for check in list_broken_checks(best)
-    ]
+    best = select_best(
+        known, lambda design: len(design.verification.failures), lambda design: design.metrics.rms_residual
+    )
+    gaps = [Gap.from_check(check) for check in best.verification.failures]
     return NearestMiss[Any](design=best, gaps=gaps, reachable=Reachable())

@@ -10,13 +10,14 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from synthesis.model.answer import Result, Search
+from synthesis.model.answer import AnyResult, Search
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.problem import LinkageProblem
-from synthesis.results.candidate_log import OUTRANKED_REASON, VerifiedDesign
+from synthesis.model.protocols import DrivenDesign, VerifiedDesign
+from synthesis.results.candidate_log import OUTRANKED_REASON
 
 Design = TypeVar("Design", bound=VerifiedDesign)
-Answer = TypeVar("Answer", bound=Result[Any])
+Answer = TypeVar("Answer", bound=AnyResult)
 
 SOUND_TRANSMISSION_ANGLE = 20.0
 """Minimum transmission angle (degrees) with which a linkage counts as sound if the client requires none."""
@@ -66,7 +67,7 @@ def select_passing(designs: Sequence[Design]) -> list[Design]:
     return [design for design in designs if design.verification.passed]
 
 
-def has_good_transmission(problem: LinkageProblem, design: Any) -> bool:
+def has_good_transmission(problem: LinkageProblem, design: DrivenDesign) -> bool:
     """Return whether a linkage that passes all checks transmits force well enough to search no other types."""
     # A required angle has already been checked, so passing is good enough.
     demanded = problem.constraints.min_transmission_angle

@@ -9,7 +9,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from functools import partial
+from typing import Generic, ParamSpec, TypeVar
+
+Arguments = ParamSpec("Arguments")
+Found = TypeVar("Found")
 
 MAX_SEARCH_SHARE = 4.0
 """Budget in seconds of processor time. Most searches take less than one second; one longer run may raise the total to
@@ -31,16 +35,16 @@ class SearchBudget:
         self._most, self._clock = most, clock
         self._spent = 0.0
 
-    def meter_search(self, search: Callable[..., Any]) -> MeteredSearch:
+    def meter_search(self, search: Callable[Arguments, Found]) -> MeteredSearch[Arguments, Found]:
         """Return a search that charges its time to this budget."""
         return MeteredSearch(self, search)
 
-    def run_metered(self, search: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
+    def run_metered(self, search: Callable[[], Found]) -> tuple[Found, float]:
         """Run a search, charge its time to the budget, and return its result and its time in seconds."""
         begun = self._clock()
         try:
             # Charge the time of a search that raises, too.
-            found = search(*arguments)
+            found = search()
         finally:
             taken = self._clock() - begun
             self._spent += taken
@@ -51,17 +55,17 @@ class SearchBudget:
         return self._spent + seconds <= self._most
 
 
-class MeteredSearch:
+class MeteredSearch(Generic[Arguments, Found]):
     """A search that charges its time to a budget; called like the search itself."""
 
-    def __init__(self, allowance: SearchBudget, search: Callable[..., Any]) -> None:
+    def __init__(self, allowance: SearchBudget, search: Callable[Arguments, Found]) -> None:
         self._allowance, self._search = allowance, search
         self._longest = 0.0
 
     # A class so that each kind of search has its own longest run.
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Arguments.args, **named: Arguments.kwargs) -> Found:
         """Run the search even if the budget is used up."""
-        found, taken = self._allowance.run_metered(self._search, arguments)
+        found, taken = self._allowance.run_metered(partial(self._search, *arguments, **named))
         self._longest = max(self._longest, taken)
         return found
 

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from itertools import combinations
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Self
 
 import numpy as np
 from pydantic import BaseModel
@@ -22,6 +22,8 @@ from kinematics.compiling import njit
 from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.model.json_object import JsonObject
+from synthesis.model.protocols import LinkageMeasures, SkeletonMechanism
 
 REACH_SCALE = 3.0
 """Reach, in task sizes, that halves the quality: such a linkage is large for its task."""
@@ -47,14 +49,6 @@ def compute_quality(transmission_sine: float, reach: float, link_ratio: float) -
         Longest link over shortest link.
     """
     return transmission_sine / ((1.0 + (reach / REACH_SCALE) ** 2) * (1.0 + (link_ratio / LINK_RATIO_SCALE) ** 2))
-
-
-class HasLinks(Protocol):
-    """A mechanism of any answer with link lengths, by name or as a model."""
-
-    @property
-    def links(self) -> Mapping[str, float] | BaseModel:
-        """Link lengths."""
 
 
 class Measures(NamedTuple):
@@ -100,7 +94,13 @@ class Measures(NamedTuple):
     used_stroke: tuple[float, float] | None
     lengths: list[float]
 
-    def select_fields(self, metrics: type[BaseModel]) -> dict[str, Any]:
+    @classmethod
+    def from_metrics(cls, metrics: LinkageMeasures, lengths: list[float]) -> Self:
+        """Return the properties of a linkage with these metrics in an answer; None for those that they lack."""
+        known = metrics.model_dump(include=set(cls._fields))
+        return cls(**{**dict.fromkeys(cls._fields), **known, "lengths": lengths})
+
+    def select_fields(self, metrics: type[BaseModel]) -> JsonObject:
         """Return the measured properties for which a model of metrics has a field."""
         return {name: getattr(self, name) for name in _list_common_fields(metrics)}
 
@@ -172,7 +172,7 @@ def measure_linkage(
     )
 
 
-def list_link_lengths(mechanism: HasLinks) -> list[float]:
+def list_link_lengths(mechanism: SkeletonMechanism) -> list[float]:
     """Return the link lengths of an answer's mechanism; a block's arm of length 0 is no link."""
     links = mechanism.links.model_dump() if isinstance(mechanism.links, BaseModel) else mechanism.links
     return [length for length in links.values() if length > 0.0]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TypeVar, cast
 
 from synthesis.model.answer import Verification
+from synthesis.model.linkage.answer import LinkageMechanism
 from synthesis.model.linkage.conversion import compute_body_shift
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
+from synthesis.model.protocols import DrivenDesign, VerifiedDesign
 from synthesis.verification.reconstruction import rebuild_mechanism
 from synthesis.verification.workspace import BODY_POINT, WORKSPACE_CHECKS, FirstPosition, check_space
 
-Design = TypeVar("Design")
+Design = TypeVar("Design", bound=VerifiedDesign)
 
 
 def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | None:
@@ -30,7 +32,8 @@ def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | 
     """
     if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.is_empty:
         return design
-    verified: Any = design
+    # Every design of a linkage problem is a driven linkage.
+    verified = cast(DrivenDesign, design)
     # The kind has checked the workspace itself, with knowledge that is not available here.
     if any(check.name in WORKSPACE_CHECKS for check in verified.verification.checks):
         return design
@@ -42,7 +45,7 @@ def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | 
     if problem.first_pose is not None:
         point, angle = problem.first_pose
         met = complex(mechanism.joints[BODY_POINT])
-        first = FirstPosition(point, met, compute_body_shift(verified.mechanism, angle))
+        carrying = cast(LinkageMechanism, verified.mechanism)
+        first = FirstPosition(point, met, compute_body_shift(carrying, angle))
     checks = [*verified.verification.checks, *check_space(problem.space, mechanism, verified.metrics, first)]
-    judged: Design = verified.model_copy(update={"verification": Verification.from_checks(checks)})
-    return judged
+    return design.model_copy(update={"verification": Verification.from_checks(checks)})

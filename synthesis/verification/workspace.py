@@ -19,9 +19,9 @@ from kinematics.linkage.planar.limits import find_branches, find_reference_branc
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from synthesis.model.answer import Check
 from synthesis.model.dimension import LENGTH
-from synthesis.model.linkage.answer import UsedRange
 from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import MovingZone, Zone
+from synthesis.model.protocols import VerifiedRange
 from synthesis.verification.branch_drive import MechanismOnBranch
 
 WORKSPACE_CHECKS = ("fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles")
@@ -51,7 +51,9 @@ class FirstPosition(NamedTuple):
         return np.asarray(self.met + (places - self.point) * np.exp(1j * self.turned))
 
 
-def check_space(space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None = None) -> list[Check]:
+def check_space(
+    space: Space, mechanism: Mechanism, used: VerifiedRange, first: FirstPosition | None = None
+) -> list[Check]:
     """Check each constraint of the workspace.
 
     Parameters
@@ -60,7 +62,7 @@ def check_space(space: Space, mechanism: Mechanism, used: UsedRange, first: Firs
         The requested workspace.
     mechanism : Mechanism
         The finished linkage, in its reference configuration at the first target.
-    used : UsedRange
+    used : VerifiedRange
         The motion over which it was verified.
     first : FirstPosition, optional
         For a linkage that carries a body.
@@ -116,7 +118,7 @@ def _measure_zone_distance(
     return min(gone)
 
 
-def _check_sweep(space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None) -> list[Check]:
+def _check_sweep(space: Space, mechanism: Mechanism, used: VerifiedRange, first: FirstPosition | None) -> list[Check]:
     """Check that links and body stay within the box and clear of the obstacles."""
     if not space.has_swept_constraints:
         return []
@@ -171,7 +173,7 @@ def _build_hull(points: Complex) -> Complex:
     return corners[:-1] if hull.geom_type == "Polygon" else corners
 
 
-def _find_input_range(space: Space, mechanism: Mechanism, used: UsedRange) -> tuple[float, float] | None:
+def _find_input_range(space: Space, mechanism: Mechanism, used: VerifiedRange) -> tuple[float, float] | None:
     """Return the minimum and maximum input of the motion to check, radians or length units; None without one."""
     if space.over == "used":
         ends = used.used_stroke

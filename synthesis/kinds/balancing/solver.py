@@ -10,6 +10,7 @@ from synthesis.kinds.balancing.rotor.solver import balance_rotor, build_rotor
 from synthesis.kinds.balancing.verification.rotor import verify_rotor
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.ranking import sort_designs
 
 
 def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingResult:
@@ -41,9 +42,16 @@ def _is_graded_in_planes(problem: BalancingProblem) -> bool:
 
 
 def _rank_designs(problem: BalancingProblem, designs: list[RotorDesign]) -> list[RotorDesign]:
-    if problem.rank_by == "places":
-        return sorted(designs, key=lambda design: (design.metrics.places, design.metrics.residual_unbalance))
-    return sorted(designs, key=lambda design: design.metrics.residual_unbalance)
+    by_places = [_get_place_count] if problem.rank_by == "places" else []
+    return sort_designs(designs, *by_places, _get_residual)
+
+
+def _get_place_count(design: RotorDesign) -> float:
+    return design.metrics.places
+
+
+def _get_residual(design: RotorDesign) -> float:
+    return design.metrics.residual_unbalance
 
 
 def _write_summary(problem: BalancingProblem, sifting: CandidateLog[RotorDesign], complete: bool) -> str:

@@ -9,12 +9,12 @@ from kinematics.cam.dynamics import FollowerLoad, RunningCam, WeakestContact
 from kinematics.cam.motion.program import Program
 from kinematics.cam.springs import Spring, SpringConstraints, find_best_spring
 from synthesis.kinds.cam.problem import METRES, CamProblem
-from synthesis.kinds.cam.statement.followers import FollowerDynamics, RateRange
+from synthesis.kinds.cam.statement.followers import FollowerDynamics, OscillatingRoller, RateRange
 
 
 def get_arm_length(problem: CamProblem) -> float:
     """Return the distance from an oscillating roller's pivot to its centre; 1 for translating followers."""
-    return getattr(problem.follower, "arm", 1.0)
+    return problem.follower.arm if isinstance(problem.follower, OscillatingRoller) else 1.0
 
 
 def build_follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:

@@ -123,10 +123,14 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return solve_barrel(problem, problem.follower, composed, progress)
     sized = _size_cam(problem, composed.program)
     if sized is None:
-        proven = not isinstance(getattr(problem.follower, "pivot_distance", None), LengthRange)
-        proven = proven and getattr(problem.follower, "offset", None) != "free" and composed.bound is None
-        # The width of an arm's face is checked on a grid of start angles only, which proves nothing.
-        proven = proven and (problem.limits.face_width is None or not isinstance(problem.follower, OscillatingFlat))
+        follower, proven = problem.follower, composed.bound is None
+        if isinstance(follower, TranslatingRoller | TranslatingFlat):
+            proven = proven and follower.offset != "free"
+        elif isinstance(follower, OscillatingRoller):
+            proven = proven and not isinstance(follower.pivot_distance, LengthRange)
+        else:
+            # The width of an arm's face is checked on a grid of start angles only, which proves nothing.
+            proven = proven and problem.limits.face_width is None
         reason = "no cam of any size follows the program within the limits on pressure angle, curvature and face width"
         return build_empty_result(problem, reason, proven, "size")
     # With conjugate closure the second cam follows from the first one's program.

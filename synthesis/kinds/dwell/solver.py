@@ -28,7 +28,7 @@ from synthesis.numerics.narrowing import find_narrowest_band
 from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog, report_candidates
 from synthesis.results.placement import place_mechanism
 from synthesis.results.practicality import sort_usable_first
-from synthesis.results.ranking import rank_designs
+from synthesis.results.ranking import rank_designs, select_best
 from synthesis.verification.measures import list_link_lengths
 
 DEFAULT_LINK_RATIO = 10.0
@@ -212,8 +212,12 @@ def _get_max_link_ratio(problem: DwellProblem) -> float:
     return DEFAULT_LINK_RATIO if stated is None else max(LINK_RATIO_SHARE * stated, 1.0)
 
 
+def _get_jitter(design: DwellDesign) -> float:
+    return design.metrics.jitter
+
+
 def _rank_designs(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesign]:
-    return rank_designs(designs, problem.rank_by, {"accuracy": lambda design: design.metrics.jitter})
+    return rank_designs(designs, problem.rank_by, {"accuracy": _get_jitter})
 
 
 def _drive_start(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | str | None:
@@ -355,7 +359,7 @@ def _describe_result(problem: DwellProblem, sifting: CandidateLog[DwellDesign]) 
         return f"No dwell sixbar was found that satisfies all constraints ({reasons}). One may still exist."
     shown, count = _rank_designs(problem, sifting.passed), len(sifting.passed)
     if problem.is_listed_later:
-        best, which = min(shown, key=lambda design: design.metrics.jitter), "stillest"
+        best, which = select_best(shown, _get_jitter), "stillest"
     else:
         best, which = sort_usable_first(problem, shown[: problem.max_designs]).designs[0], "first"
     widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)

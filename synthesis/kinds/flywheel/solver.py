@@ -14,6 +14,7 @@ from synthesis.kinds.flywheel.verification import verify_flywheel
 from synthesis.mechanisms import flywheel
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.ranking import select_best, sort_designs
 
 
 def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
@@ -47,7 +48,7 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
     sifting.verify_candidates(wheels, partial(verify_flywheel, problem))
     progress(1.0, "verified")
     return FlywheelResult(
-        designs=sifting.select_designs(lambda designs: sorted(designs, key=lambda design: design.metrics.mass)),
+        designs=sifting.select_designs(lambda designs: sort_designs(designs, _get_mass)),
         search=sifting.build_search("exact", complete=not sifting.rejected),
         summary=" ".join([_write_summary(problem, asked, sifting), *said]),
         fluctuation=asked,
@@ -104,6 +105,10 @@ def _size_wheel(
     )
 
 
+def _get_mass(design: FlywheelDesign) -> float:
+    return design.metrics.mass
+
+
 def _write_summary(problem: FlywheelProblem, fluctuation: Fluctuation, sifting: CandidateLog[FlywheelDesign]) -> str:
     joule, kilogram, inertia = (" J", " kg", " kg·m²") if problem.units == "si" else ("", "", "")
     text = [f"The energy fluctuates by {fluctuation.energy:.6g}{joule} over a cycle."]
@@ -112,7 +117,7 @@ def _write_summary(problem: FlywheelProblem, fluctuation: Fluctuation, sifting: 
     if fluctuation.inertia == 0.0:
         text.append("No flywheel is needed: the shaft keeps the coefficient without one.")
     elif sifting.passed:
-        best = min(sifting.passed, key=lambda design: design.metrics.mass)
+        best = select_best(sifting.passed, _get_mass)
         limits = ", ".join(best.metrics.at_limits).replace("_", " ")
         text.append(
             f"The lightest wheel is a {best.mechanism.form} with a mass of {best.metrics.mass:.6g}{kilogram} "

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Real
@@ -282,6 +283,13 @@ class FunctionProblem(LinkageProblem):
     def guides_a_point(self) -> bool:
         """Whether the linkage guides a coupler point P; never for a function generator."""
         return False
+
+    def measure_target_errors(
+        self, design: Any, _counted: NDArray[np.bool_] | None = None
+    ) -> tuple[float | None, float | None]:
+        """Return the maximum structural error as a distance, or as an angle in degrees."""
+        greatest = design.metrics.max_structural_error
+        return (greatest, None) if self.slides else (None, greatest)
 
     def build_required_targets(self, design: Any) -> RequiredTargets:
         """Return the pairs, precision points, or samples of the range that a manufactured design must keep."""

@@ -33,6 +33,7 @@ from synthesis.kinds.function.verification.verify import verify_function
 from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog
+from synthesis.results.ranking import select_best
 
 MEMBER_COUNT = 4000
 """Number of sampled members of a family."""
@@ -387,7 +388,7 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
     def build_approximation_result(self, judged: int, improved: int) -> FunctionResult:
         """Build the result of an approximation."""
         if self.passed:
-            best = min(self.passed, key=partial(get_error, self.problem))
+            best = select_best(self.passed, partial(get_error, self.problem))
             error = best.structural_error
             unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
             if self.problem.aim == "minimax":

@@ -32,6 +32,7 @@ from synthesis.model.linkage.type_choice import (
     select_searched_sixbars,
 )
 from synthesis.results.candidate_log import DEFECT_REASONS, LENGTH_REASONS, OUTRANKED_REASON, CandidateLog
+from synthesis.results.ranking import select_best
 from synthesis.results.simplest_type import (
     ERROR_RATIO,
     describe_alternatives,
@@ -181,7 +182,7 @@ def _describe_result(problem: FunctionProblem, sifting: CandidateLog[FunctionDes
             f"{weighed}; no design found satisfies all constraints.{sifting.describe_reasons()} "
             "This does not prove that none exists."
         )
-    best = min(sifting.passed, key=lambda design: get_error(problem, design))
+    best = select_best(sifting.passed, partial(get_error, problem))
     error = best.structural_error
     if problem.aim == "precision":
         count = len(sifting.passed)

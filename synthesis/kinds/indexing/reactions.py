@@ -60,14 +60,13 @@ def compute_crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, 
 
     A drag link is driven by the analysis core; otherwise the crank is the input.
     """
-    link = getattr(mechanism, "drag_link", None)
-    if link is None or not isinstance(mechanism, GenevaMechanism):
+    if not isinstance(mechanism, GenevaMechanism) or mechanism.drag_link is None:
         return Motion(angle, np.ones_like(angle), np.zeros_like(angle), np.zeros_like(angle))
     moved = drive_link(mechanism, angle)
     output = moved.angles["output"]
     arm = moved.joints["B"][0] - mechanism.center_distance
     towards = math.pi if mechanism.type == "geneva_external" else 0.0
-    first = float(np.angle(arm[0] * np.exp(1j * (math.radians(link.crank_offset) - towards))))
+    first = float(np.angle(arm[0] * np.exp(1j * (math.radians(mechanism.drag_link.crank_offset) - towards))))
     return Motion(first + output[0] - output[0, 0], output[1], output[2], output[3])
 
 

@@ -30,7 +30,6 @@ from synthesis.kinds.motion.exact.slider_cranks import merge_sliders, solve_slid
 from synthesis.kinds.motion.least_squares.solver import solve_least_squares
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask
-from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.type_selection import solve_types
 from synthesis.model.answer import Search
 from synthesis.model.counting import choose_word, format_count, format_integer
@@ -168,14 +167,13 @@ def _report_missing_dyads(pairs: DyadPairs, side: str, cloud: Cloud) -> MotionRe
 def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     """Verify every pair of a few determined dyads, with either side as the input if both sides have the same dyads."""
     sifting = CandidateLog[LinkageDesign](pairs.problem, DEFECT_REASONS | LENGTH_REASONS)
-    target = make_target_poses(pairs.problem)
     # Each pair of equal dyads once; the other order swaps input and output.
     for i in range(len(pairs.inputs.fixed)):
         for j in range(i + 1 if pairs.same_dyads else 0, len(pairs.outputs.fixed)):
-            reasons = [sifting.insert_design(pairs.verify_pair(target, (i, j)))]
+            reasons = [sifting.insert_design(pairs.verify_pair((i, j)))]
             # Driving from the other side can only help if the first rejection depends on the input side.
             if pairs.same_dyads and reasons[0] not in _INPUT_INDEPENDENT_REASONS:
-                reasons.append(sifting.insert_design(pairs.verify_pair(target, (j, i))))
+                reasons.append(sifting.insert_design(pairs.verify_pair((j, i))))
             sifting.count("" if "" in reasons else reasons[0])
     progress(1.0, "verified")
     complete = all(cloud.complete for cloud in pairs.clouds) and not NUMERICAL_REASONS & sifting.rejected.keys()
@@ -186,7 +184,7 @@ def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
 
 def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     """Screen all pairs and verify the best distinct ones."""
-    problem, target = pairs.problem, make_target_poses(pairs.problem)
+    problem = pairs.problem
     count = len(pairs.inputs.fixed) * len(pairs.outputs.fixed)
     progress(0.1, f"screening {count} pairs of dyads")
     limit = problem.constraints.min_transmission_angle
@@ -200,9 +198,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
     sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS | LENGTH_REASONS)
     sifting.rejected.update(screening.count_rejections())
-    driven = sifting.verify_candidates(
-        pairs.select_best(screening), partial(pairs.verify_pair, target), enough=problem.max_designs
-    )
+    driven = sifting.verify_candidates(pairs.select_best(screening), pairs.verify_pair, enough=problem.max_designs)
     sifting.reject(OUTRANKED_REASON, sound - driven)
     if problem.include_failed and len(sifting.passed) < problem.max_designs:
         # Show the best linkages that move correctly but violate a limit; those that violate none are found already.
@@ -213,7 +209,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
         if LIMIT_REASONS & screening.count_rejections().keys():
             screening = pairs.screen_pairs(motion_alone, 0.0)
         for pair in pairs.select_best(screening)[: problem.max_designs]:
-            sifting.insert_design(pairs.verify_pair(target, pair))
+            sifting.insert_design(pairs.verify_pair(pair))
         # This second screening is only for failed designs; it must not change the list of passed ones.
         sifting.passed = passed
     progress(1.0, "verified")

@@ -7,6 +7,8 @@ course are fitted too (:mod:`synthesis.kinds.path.curve.solver`). If a start is 
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from synthesis.kinds.path.curve.solver import fit_by_shape, fit_stance_from_points
@@ -27,7 +29,7 @@ from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.results.candidate_log import report_candidates
-from synthesis.results.ranking import rank_designs
+from synthesis.results.ranking import rank_designs, select_best
 
 MIN_DRIVEN = 12
 """Minimum number of linkages that are verified, even if fewer designs are requested."""
@@ -129,7 +131,7 @@ class _PointFits(PathCandidateLog):
         n, unit = len(self.problem.points), self.problem.length_unit
         timing = "at their crank angles" if self.problem.prescribed else "in order"
         if self.passed:
-            best = min(self.passed, key=lambda design: compute_error(design, self.problem)).metrics
+            best = select_best(self.passed, partial(compute_error, problem=self.problem)).metrics
             passed, of = len(self.passed), format_count(self.candidates, "fitted linkage")
             text = (
                 f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The "
@@ -155,4 +157,4 @@ class _PointFits(PathCandidateLog):
 
 def _find_nearest(designs: list[PathDesign]) -> PathDesign:
     """Return the design nearest at the points."""
-    return min(designs, key=lambda design: design.metrics.sum_of_squares)
+    return select_best(designs, lambda design: design.metrics.sum_of_squares)

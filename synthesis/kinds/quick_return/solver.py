@@ -19,7 +19,7 @@ from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import LENGTH_REASONS, CandidateLog
 from synthesis.results.placement import place_mechanism
-from synthesis.results.ranking import rank_designs
+from synthesis.results.ranking import SORT_KEYS, rank_designs, select_best
 from synthesis.verification.measures import list_link_lengths
 
 
@@ -132,7 +132,7 @@ def _describe_result(
         for name in short
     ]
     if sifting.passed:
-        best = max(sifting.passed, key=lambda design: design.metrics.min_transmission_angle)
+        best = select_best(sifting.passed, SORT_KEYS["transmission_angle"])
         count = len(sifting.passed)
         lines.insert(
             0,

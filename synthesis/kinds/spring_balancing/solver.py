@@ -12,6 +12,7 @@ from synthesis.kinds.spring_balancing.search import search_springs
 from synthesis.kinds.spring_balancing.verification import verify_springs
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.ranking import select_best, sort_designs
 
 MIN_POSITIONS = 5
 """Minimum number of positions with known forces for a motion to count."""
@@ -65,16 +66,20 @@ def _build_result(
     sifting: CandidateLog[SprungDesign], method: str, summary: str, *, complete: bool
 ) -> SpringBalancingResult:
     return SpringBalancingResult(
-        designs=sifting.select_designs(lambda designs: sorted(designs, key=lambda design: design.metrics.value)),
+        designs=sifting.select_designs(lambda designs: sort_designs(designs, _get_value)),
         search=sifting.build_search(method, complete=complete),
         summary=summary,
     )
 
 
+def _get_value(design: SprungDesign) -> float:
+    return design.metrics.value
+
+
 def _write_summary(sifting: CandidateLog[SprungDesign], proved: bool) -> str:
     if not sifting.passed:
         return f"No design found.{sifting.describe_reasons()}"
-    metrics = min(sifting.passed, key=lambda design: design.metrics.value).metrics
+    metrics = select_best(sifting.passed, _get_value).metrics
     if metrics.exact:
         energy = "" if metrics.energy_variation is None else " and the potential energy constant"
         return f"The springs balance the linkage exactly: the drive is zero{energy} over the motion."

@@ -149,6 +149,12 @@ class LoadSpec(Statement):
     force: ForceCurve | None = None
     torque: TorqueCurve | None = None
 
+    @property
+    def is_constant(self) -> bool:
+        """Whether the force or torque is the same throughout the motion."""
+        strength = self.force or self.torque
+        return strength is not None and strength.constant is not None
+
     @model_validator(mode="after")
     def _validate_place(self) -> Self:
         if (self.link is None) == (self.joint is None):

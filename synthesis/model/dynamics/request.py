@@ -99,10 +99,12 @@ class LoadedLinkage(Statement):
 
     @model_validator(mode="after")
     def _validate_materials(self) -> Self:
-        shapes = [*(stated.shape for stated in self.bodies.values()), getattr(self, "links", None)]
-        if self.units != "si" and any(shape is not None and shape.material is not None for shape in shapes):
+        if self.units != "si" and any(shape.material is not None for shape in self._list_shapes()):
             raise ValueError("materials are defined in SI units; with consistent units give densities")
         return self
+
+    def _list_shapes(self) -> list[Shape | LinkShape]:
+        return [stated.shape for stated in self.bodies.values() if stated.shape is not None]
 
     def scale(self, unit: LengthUnit) -> float:
         """Return the factor from the length unit to the length unit of forces: metres for SI, otherwise 1."""
@@ -152,6 +154,9 @@ class DesignDynamics(LoadedLinkage):
     )
 
     _plate: Shape | None = PrivateAttr(default=None)
+
+    def _list_shapes(self) -> list[Shape | LinkShape]:
+        return [*super()._list_shapes(), *([] if self.links is None else [self.links])]
 
     @property
     def plate(self) -> Shape | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Annotated, Any, Literal, Self, get_args
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any, Literal, Protocol, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,6 +159,17 @@ class Constraints(Statement):
         return [Contradiction("/constraints/grashof", f"{reason}; drop the constraint")]
 
 
+class RequestedDriver(Protocol):
+    """A driver dyad as requested: a crank and a link that drive the linkage."""
+
+    @property
+    def pivot_region(self) -> Region | None:
+        """Region of the crank's fixed pivot."""
+
+    def model_copy(self, *, update: Mapping[str, object] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other values of some fields."""
+
+
 class LinkageProblem(ProblemBase):
     """Fields that all linkage problems share."""
 
@@ -222,6 +233,27 @@ class LinkageProblem(ProblemBase):
         """Return the requirements on a design at its targets, for kinds that support :attr:`manufacture_task`."""
         raise NotImplementedError(f"{self.kind} has no requirements at targets")
 
+    def measure_target_errors(
+        self, design: Any, counted: NDArray[np.bool_] | None = None
+    ) -> tuple[float | None, float | None]:
+        """Return the maximum distance and angle (degrees) by which a design misses its targets; None without any.
+
+        ``counted`` marks the targets that count; by default all.
+        """
+        targets = [target for n, target in enumerate(design.targets) if counted is None or counted[n]]
+        angles = [target.angle_residual for target in targets if target.angle_residual is not None]
+        return max((target.point_residual for target in targets), default=None), max(angles, default=None)
+
+    @property
+    def task_size(self) -> float | None:
+        """Size of the task in length units, to which distances are compared; None if the task has none."""
+        return None
+
+    @property
+    def driver(self) -> RequestedDriver | None:
+        """The requested driver dyad; None if none is requested."""
+        return None
+
     @property
     def first_pose(self) -> tuple[complex, float] | None:
         """First pose of a carried body: its point P and its angle in degrees. None for tasks without a body."""
@@ -245,8 +277,8 @@ class LinkageProblem(ProblemBase):
             return listed
         if self.space.body is not None:
             listed.append(Contradiction("/space/body", "only tasks that carry a body through positions have a body"))
-        for side in ("input", "output"):
-            zones = getattr(self.space.moving_pivots, side, None)
+        moving = self.space.moving_pivots
+        for side, zones in (("input", moving.input), ("output", moving.output)) if moving is not None else ():
             if any(zone.frame == "body" for zone in ([zones] if isinstance(zones, MovingZone) else zones or [])):
                 detail = "frame body needs a task that carries a body through positions; leave the frame out"
                 listed.append(Contradiction(f"/space/moving_pivots/{side}", detail))

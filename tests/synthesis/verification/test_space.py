@@ -7,7 +7,6 @@ import shapely
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.exact.clearance_filter import check_fourbar_clearance
 from synthesis.kinds.motion.exact.dyad_pairs import make_pairs
-from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import AnyZone, Zone
 from synthesis.registry import parse_problem
@@ -76,10 +75,9 @@ def test_what_the_screen_drops_would_fail_the_sweep(name):
     i, j = np.unravel_index(chosen, score.shape)
     joints = [pairs.inputs.fixed[i], pairs.inputs.moving[i], pairs.outputs.moving[j], pairs.outputs.fixed[j]]
     kept = check_fourbar_clearance(problem, pairs.task, np.stack(joints, axis=1))
-    target = make_target_poses(problem)
     swept = []
     for pair in zip(i.tolist(), j.tolist(), strict=True):
-        design = pairs.verify_pair(target, pair)
+        design = pairs.verify_pair(pair)
         mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         first = FirstPosition(0j, complex(mechanism.joints["P"]), 0.0)
         swept.append(all(check.passed for check in check_space(problem.space, mechanism, design.metrics, first)))

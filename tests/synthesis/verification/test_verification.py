@@ -116,6 +116,7 @@ def test_moved_pivot_is_found() -> None:
 def test_every_defect_by_independent_continuation() -> None:
     """Random pairs of dyads: circuit, branch, order and transmission are as the continuation finds them."""
     from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+    from synthesis.kinds.motion.task.pivot_regions import list_side_areas
     from synthesis.kinds.motion.task.positions import make_motion_task
 
     rng = np.random.default_rng(6)
@@ -124,7 +125,11 @@ def test_every_defect_by_independent_continuation() -> None:
         planted = plant(rng, 3, 10.0)
         problem = problem_of(planted)
         task = make_motion_task(problem)
-        sides = [find_side_dyads(task, problem, k, np.random.default_rng(trial + 100 * k), 40).dyads for k in (0, 1)]
+        areas = list_side_areas(problem)
+        sides = [
+            find_side_dyads(task, problem, k, areas[k], np.random.default_rng(trial + 100 * k), 40).dyads
+            for k in (0, 1)
+        ]
         designs = []
         for i in range(min(len(sides[0].fixed), len(sides[1].fixed))):
             joints = [
@@ -200,14 +205,15 @@ def test_choices_that_are_not_kept_are_found() -> None:
 def test_demands_of_the_motion_can_be_dropped() -> None:
     """A linkage with a branch defect fails by default and is reported as a metric when the client drops the demand."""
     from synthesis.kinds.motion.dyads.candidates import find_side_dyads
+    from synthesis.kinds.motion.task.pivot_regions import list_side_areas
     from synthesis.kinds.motion.task.positions import make_motion_task
 
     rng = np.random.default_rng(10)
     planted = plant(rng, 3)
     problem = problem_of(planted)
     relaxed = problem_of(planted, constraints={"same_branch": False, "in_order": False})
-    task = make_motion_task(problem)
-    one, other = (find_side_dyads(task, problem, 0, np.random.default_rng(k), 60) for k in (0, 1))
+    task, areas = make_motion_task(problem), list_side_areas(problem)
+    one, other = (find_side_dyads(task, problem, 0, areas[0], np.random.default_rng(k), 60) for k in (0, 1))
     found = 0
     for i in range(50):
         joints = [complex(z[i]) for z in (one.dyads.fixed, one.dyads.moving, other.dyads.moving, other.dyads.fixed)]

@@ -33,7 +33,7 @@ def compute_overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
     if problem.dynamics is None:
         return None
     running, follower, program = press_follower(problem, cam.program).running, cam.follower, cam.program
-    overhang = getattr(problem.follower, "overhang", None)
+    overhang = problem.follower.overhang if isinstance(problem.follower, TranslatingRoller) else None
     if isinstance(follower, core.TranslatingFlat):
         face = follower
 

@@ -49,7 +49,13 @@ from synthesis.kinds.cam.program.optimal import (
     minimize_roller_size,
     minimize_torque,
 )
-from synthesis.kinds.cam.statement.followers import BarrelRoller, LengthRange, TranslatingFlat, TranslatingRoller
+from synthesis.kinds.cam.statement.followers import (
+    BarrelRoller,
+    LengthRange,
+    OscillatingFlat,
+    TranslatingFlat,
+    TranslatingRoller,
+)
 from synthesis.kinds.cam.statement.limits import CamLimits
 from synthesis.kinds.cam.statement.segment_ends import END_RATES, State, compute_law_ends
 from synthesis.kinds.cam.statement.segments import Dwell, Move, Polynomial
@@ -617,16 +623,16 @@ def _bound_criterion(
 
 def get_roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
     """Return the least and greatest roller radius; None for a flat face."""
-    radius = getattr(problem.follower, "roller_radius", None)
-    if radius is None:
+    if isinstance(problem.follower, TranslatingFlat | OscillatingFlat):
         return None
+    radius = problem.follower.roller_radius
     return (radius.min, radius.max) if isinstance(radius, LengthRange) else (radius, radius)
 
 
 def compute_min_face_radius(problem: CamProblem) -> float:
     """Return the least radius of curvature of a cam under a flat face: the limit, or the least that is not an edge."""
     # On an arm the travel is an angle; the pivot distance turns it into a length.
-    reach = getattr(problem.follower, "pivot_distance", 1.0)
+    reach = problem.follower.pivot_distance if isinstance(problem.follower, OscillatingFlat) else 1.0
     return max(problem.limits.min_radius, MIN_FACE_RADIUS_SHARE * problem.program.travel * reach)
 
 

@@ -84,7 +84,7 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
 
 def _compute_span(design: IndexingDesign) -> tuple[float, float]:
     """Return the input's angles, radians, at the entry and the exit of a roller."""
-    link = getattr(design.mechanism, "drag_link", None)
+    link = design.mechanism.drag_link if isinstance(design.mechanism, GenevaMechanism) else None
     start = math.radians(-0.5 * design.index_angle if link is None else link.entry_angle)
     return start, start + math.radians(design.index_angle)
 

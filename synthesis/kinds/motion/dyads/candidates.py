@@ -34,7 +34,7 @@ from synthesis.kinds.motion.dyads.equations import (
 from synthesis.kinds.motion.dyads.finite_sets import SliderDyad, build_pose_rows, find_section
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices, to_complete_point
-from synthesis.kinds.motion.task.pivot_regions import SideAreas, inside_mask, list_side_areas, sample_area
+from synthesis.kinds.motion.task.pivot_regions import SideAreas, inside_mask, sample_area
 from synthesis.kinds.motion.task.positions import MotionTask, find_given_pivot
 from synthesis.kinds.motion.task.random_points import sample_distances, sample_points_around
 from synthesis.model.problem import PartialPoint
@@ -152,15 +152,17 @@ def _intersect_lines(first: Line, second: Line) -> Complex:
     )
 
 
-def find_side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np.random.Generator, count: int) -> Cloud:
+def find_side_dyads(
+    task: MotionTask, problem: MotionProblem, side: int, areas: SideAreas, rng: np.random.Generator, count: int
+) -> Cloud:
     """Find all dyads that one side's choices determine, or a cloud of about ``count`` if some choices are open.
 
-    ``side`` is 0 for the input and 1 for the output.
+    ``side`` is 0 for the input and 1 for the output; ``areas`` are those of this side.
     """
     impossible = explain_no_dyads(task)
     if impossible is not None:
         return Cloud(_NO_DYADS, False, impossible.proved, impossible.text)
-    choices, areas = (problem.input_side, problem.output_side)[side], list_side_areas(problem)[side]
+    choices = (problem.input_side, problem.output_side)[side]
     conditions = build_conditions(task, problem, choices)
     essential, conditions, lost = _drop_redundant_positions(task, conditions)
     free = 5 - len(essential.points) - conditions.count()

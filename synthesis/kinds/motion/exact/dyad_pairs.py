@@ -23,7 +23,7 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
 from synthesis.kinds.motion.task.pivot_regions import list_side_areas
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
-from synthesis.kinds.motion.task.target_poses import TargetPoses
+from synthesis.kinds.motion.task.target_poses import TargetPoses, make_target_poses
 from synthesis.kinds.motion.verification.verify import verify
 from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
@@ -78,6 +78,7 @@ class DyadPairs:
 
     problem: MotionProblem
     task: MotionTask
+    target: TargetPoses
     clouds: tuple[Cloud, Cloud]
 
     @property
@@ -111,7 +112,7 @@ class DyadPairs:
         named = zip(("input", "output"), self.clouds, strict=True)
         return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
 
-    def verify_pair(self, target: TargetPoses, pair: tuple[int, int]) -> LinkageDesign | str | None:
+    def verify_pair(self, pair: tuple[int, int]) -> LinkageDesign | str | None:
         """Build and verify the linkage of an input and an output dyad."""
         o2, a = self._resolve_pivots(self.problem.input_side, self.inputs, pair[0])
         o4, b = self._resolve_pivots(self.problem.output_side, self.outputs, pair[1])
@@ -119,7 +120,7 @@ class DyadPairs:
         joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
         if not joints.has_no_link_below(MIN_LINK_SHARE):
             return "degenerate"
-        return verify(self.problem, build_fourbar(joints), target)
+        return verify(self.problem, build_fourbar(joints), self.target)
 
     def _resolve_pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
         """Return both pivots of a dyad in the problem's coordinates; given pivots keep their exact values."""
@@ -224,13 +225,15 @@ def make_pairs(problem: MotionProblem) -> DyadPairs:
     pair, single = (
         (PAIRED_CURVE_SIZE, SINGLE_CURVE_SIZE) if len(task.points) == 4 else (PAIRED_CLOUD_SIZE, SINGLE_CLOUD_SIZE)
     )
-    clouds = [find_side_dyads(task, problem, 0, rng, pair)]
     areas = list_side_areas(problem)
+    clouds = [find_side_dyads(task, problem, 0, areas[0], rng, pair)]
     alike = problem.input_side == problem.output_side and areas[0] == areas[1]
     # A sampled cloud differs for each side, so that the pairs are more varied.
-    clouds.append(clouds[0] if alike and not clouds[0].sampled else find_side_dyads(task, problem, 1, rng, pair))
+    clouds.append(
+        clouds[0] if alike and not clouds[0].sampled else find_side_dyads(task, problem, 1, areas[1], rng, pair)
+    )
     for k in (0, 1):
         if clouds[k].sampled and not clouds[1 - k].sampled:
             # With one determined side the product of both numbers stays the same for a larger cloud.
-            clouds[k] = find_side_dyads(task, problem, k, rng, single)
-    return DyadPairs(problem, task, (clouds[0], clouds[1]))
+            clouds[k] = find_side_dyads(task, problem, k, areas[k], rng, single)
+    return DyadPairs(problem, task, make_target_poses(problem), (clouds[0], clouds[1]))

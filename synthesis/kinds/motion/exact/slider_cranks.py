@@ -113,15 +113,16 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     progress(0.0, "finding sliders")
     side = int(problem.output_side.dyad == kind)
     stated = (problem.input_side, problem.output_side)[side]
-    areas = list_side_areas(problem)[side]
-    inside_of = areas.moving if kind == "PR" else areas.fixed
+    areas = list_side_areas(problem)
+    inside_of = areas[side].moving if kind == "PR" else areas[side].fixed
     # Zones are small targets for random samples, so sample more and keep those inside.
     more = ZONE_OVERSAMPLING if problem.space is not None and inside_of else 1
     dyads = find_sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDER_COUNT * more)
     if not len(dyads.points):
         return _report_missing_dyads(problem, dyads.reason, complete=dyads.proved)
     progress(0.1, "finding links")
-    links = find_side_dyads(task, problem, 1 - side, rng, LINK_COUNT if dyads.sampled else SINGLE_SIDE_COUNT)
+    count = LINK_COUNT if dyads.sampled else SINGLE_SIDE_COUNT
+    links = find_side_dyads(task, problem, 1 - side, areas[1 - side], rng, count)
     if not len(links.dyads.fixed):
         return _report_missing_dyads(
             problem, links.reason.replace("the side", "the side with pins"), complete=links.complete

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from kinematics.arrays import Complex, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask
 from synthesis.model.linkage.problem import Region
+from synthesis.model.linkage.workspace import FixedPivotZones, MovingPivotZones
 from synthesis.model.linkage.zones import AnyZone, Area, Zone
 
 
@@ -27,20 +29,27 @@ class SideAreas(NamedTuple):
 def list_side_areas(problem: MotionProblem) -> tuple[SideAreas, SideAreas]:
     """Return the areas of the input side and of the output side."""
     constraints, space = problem.constraints, problem.space
-    sides = []
-    for side in ("input", "output"):
-        areas: list[tuple[Area, ...]] = []
-        for region, zones in (
-            (constraints.fixed_pivot_region, space.fixed_pivots if space else None),
-            (constraints.moving_pivot_region, space.moving_pivots if space else None),
-        ):
-            of_side: Zone | list[Zone] | None = getattr(zones, side, None)
-            listed: list[Area] = [] if region is None else [region]
-            if of_side is not None:
-                listed.append(of_side if isinstance(of_side, Zone) else AnyZone(of_side))
-            areas.append(tuple(listed))
-        sides.append(SideAreas(*areas))
-    return sides[0], sides[1]
+    fixed, moving = FixedPivotZones(), MovingPivotZones()
+    if space is not None:
+        fixed, moving = space.fixed_pivots or fixed, space.moving_pivots or moving
+    return (
+        SideAreas(
+            _list_areas(constraints.fixed_pivot_region, fixed.input),
+            _list_areas(constraints.moving_pivot_region, moving.input),
+        ),
+        SideAreas(
+            _list_areas(constraints.fixed_pivot_region, fixed.output),
+            _list_areas(constraints.moving_pivot_region, moving.output),
+        ),
+    )
+
+
+def _list_areas(region: Region | None, zones: Zone | Sequence[Zone] | None) -> tuple[Area, ...]:
+    """Return the region common to both sides and the zones of one side, as far as they are given."""
+    listed: list[Area] = [] if region is None else [region]
+    if zones is not None:
+        listed.append(zones if isinstance(zones, Zone) else AnyZone(zones))
+    return tuple(listed)
 
 
 def inside_mask(task: MotionTask, areas: tuple[Area, ...], points: Complex) -> NDArray[np.bool_]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.results.ranking import rank_designs
+from synthesis.results.ranking import rank_designs, select_best, sort_designs
 
 EQUAL_ERROR_RATIO, ACCURATE_ERROR_RATIO, ERROR_TOLERANCE = 1.1, 1.001, 1e-9
 """Errors within these factors count as equal, and quality decides: for the best design, and for the most accurate one.
@@ -88,7 +89,7 @@ def rank_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[Pa
         return _GRADE_COUNT if is_far(design) else classify_usability(design)
 
     # Ranking is stable: equal grades and classes stay in the order of their errors.
-    nearest_first = sorted(designs, key=lambda design: compute_error(design, problem))
+    nearest_first = sort_designs(designs, partial(compute_error, problem=problem))
     own = {"quality": classify_error, "accuracy": classify_error}
     return rank_designs(
         nearest_first, problem.rank_by, own, group=rank_usability if is_usable_preferred(problem) else None
@@ -107,12 +108,12 @@ def build_ordering(problem: PathProblem) -> Callable[[list[PathDesign]], list[Pa
     Designs that fail a check come last.
     """
 
-    def sort_designs(designs: list[PathDesign]) -> list[PathDesign]:
+    def sort_exact_first(designs: list[PathDesign]) -> list[PathDesign]:
         exact = rank_designs([design for design in designs if is_exact(design)], problem.rank_by)
         fits = rank_by_nearness([design for design in designs if not is_exact(design)], problem)
-        return sorted([*exact, *fits], key=lambda design: not design.verification.passed)
+        return sort_designs([*exact, *fits])
 
-    return sort_designs
+    return sort_exact_first
 
 
 _GRADE_COUNT = 2
@@ -141,7 +142,7 @@ def explain_choice(designs: list[PathDesign], problem: PathProblem) -> str:
     """
     if not designs or not is_usable_preferred(problem):
         return ""
-    first, nearest = designs[0], min(designs, key=lambda design: compute_error(design, problem))
+    first, nearest = designs[0], select_best(designs, partial(compute_error, problem=problem))
     # The first is practically the nearest: there is nothing to explain.
     if compute_error(first, problem) <= EQUAL_ERROR_RATIO * compute_error(nearest, problem):
         return ""

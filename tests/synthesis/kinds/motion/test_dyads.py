@@ -10,6 +10,7 @@ import pytest
 from synthesis.kinds.motion.dyads.candidates import build_conditions, find_side_dyads
 from synthesis.kinds.motion.dyads.equations import DyadConditions, Dyads, solve_dyads
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
+from synthesis.kinds.motion.task.pivot_regions import list_side_areas
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
@@ -158,7 +159,7 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
         choices = DyadChoices.model_validate(side.choices(*names))
         problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": side.choices(*names)})
         task = make_motion_task(problem)
-        cloud = find_side_dyads(task, problem, 0, np.random.default_rng(trial), 1)
+        cloud = find_side_dyads(task, problem, 0, list_side_areas(problem)[0], np.random.default_rng(trial), 1)
         gaps = np.abs(cloud.dyads.fixed - task.to_task(side.fixed_pivot))
         gaps += np.abs(cloud.dyads.moving - task.to_task(side.moving_pivot))
         assert gaps.min(initial=math.inf) < 1e-7, (trial, names)
@@ -174,7 +175,7 @@ def test_directions_are_met_forwards_only() -> None:
     stated = planted.input_side.choices("moving", "theta")
     stated["link_angle"] += 180.0
     problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": stated})
-    cloud = find_side_dyads(make_motion_task(problem), problem, 0, rng, 1)
+    cloud = find_side_dyads(make_motion_task(problem), problem, 0, list_side_areas(problem)[0], rng, 1)
     assert len(cloud.dyads.fixed) == 0
 
 

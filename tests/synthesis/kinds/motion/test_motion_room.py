@@ -32,6 +32,7 @@ from synthesis.kinds.motion.dyads.candidates import find_side_dyads
 from synthesis.kinds.motion.exact import slider_cranks
 from synthesis.kinds.motion.exact.clearance_filter import check_slider_clearance
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.task.pivot_regions import list_side_areas
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.kinds.motion.verification.verify import make_target_poses, verify
 from synthesis.registry import parse_problem
@@ -182,7 +183,7 @@ def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -
     assert isinstance(problem, MotionProblem)
     task, rng = make_motion_task(problem), np.random.default_rng(5)
     lines = slider_cranks.find_sliders(task, problem.output_side, inverted=False, rng=rng, count=40)
-    links = find_side_dyads(task, problem, 0, rng, 40).dyads
+    links = find_side_dyads(task, problem, 0, list_side_areas(problem)[0], rng, 40).dyads
     screened = slider_cranks._screen(problem, task, links, lines, "PR", False, 30.0)
     i, j = (some[::7][:60] for some in np.nonzero(screened.score))
     joints = np.stack([links.fixed[i], links.moving[i], lines.points[j]], axis=1)

@@ -9,6 +9,7 @@ import pytest
 
 from synthesis.kinds.motion.dyads.candidates import find_side_dyads
 from synthesis.kinds.motion.exact.screening import REASONS, make_screening_constraints, screen
+from synthesis.kinds.motion.task.pivot_regions import list_side_areas
 from synthesis.kinds.motion.task.positions import make_motion_task
 from synthesis.kinds.motion.verification.verify import verify
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
@@ -60,7 +61,10 @@ def test_verdicts_agree_with_the_analysis_core(n: int, constraints: dict[str, An
         problem = parse_problem({"kind": "motion", "positions": planted.positions, "constraints": constraints})
         task = make_motion_task(problem)
         one, other = (
-            find_side_dyads(task, problem, 0, np.random.default_rng(10 * trial + k), 16).dyads for k in (0, 1)
+            find_side_dyads(
+                task, problem, 0, list_side_areas(problem)[0], np.random.default_rng(10 * trial + k), 16
+            ).dyads
+            for k in (0, 1)
         )
         screening = screen(
             task,
