@@ -31,7 +31,7 @@ from synthesis.kinds.function.design import (
     StructuralError,
 )
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.verification.driven import Drive, DrivenStates, make_drive
+from synthesis.kinds.function.verification.drive import Drive, DrivenStates, make_drive
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import build_driven_fourbar
