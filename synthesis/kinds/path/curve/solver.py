@@ -202,7 +202,7 @@ def _match_shapes(
 ) -> tuple[list[Fit], CurveSweep]:
     """Find the linkages whose curves have the target's shape and whose error is near the minimum."""
     families = list_families(problem)
-    longest = float(setting[LINKS + 1])
+    longest = float(setting[LINKS][1])
     free: list[Fit] = []
     library: list[ComparedShapes] = []
     least = math.inf

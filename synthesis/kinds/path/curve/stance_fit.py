@@ -224,7 +224,7 @@ def fit_simple_stance(
     setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, sign, linkage_limits.ratio
     setting[LONGEST], setting[JAM_CYCLE] = linkage_limits.longest, linkage_limits.cycle
     setting[TRANSMISSION_COSINE] = cosine
-    setting[PIVOT_LIMITS:] = linkage_limits.within.ravel()
+    setting[PIVOT_LIMITS] = linkage_limits.within.ravel()
     n, x, limits = len(points), np.array(x), MARGIN_COUNT + LENGTH_MARGIN_COUNT + PIVOT_MARGIN_COUNT
     state = np.zeros(n + limits)
     state[:n] = theta

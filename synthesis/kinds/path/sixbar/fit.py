@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from synthesis.fit.constraints import (
-    BOXES,
     CHANGE_POINT,
     COSINE,
     FAMILY_INDEX,
     FULL_TURN_INDEX,
+    INPUT_BOX,
+    OUTPUT_BOX,
     RATIO,
     SETTING_SIZE,
     SIGN_INDEX,
@@ -96,14 +97,13 @@ def pack_sixbar_setting(problem: PathProblem, centre: complex, size: float, degr
     out[FULL_TURN_INDEX], out[CHANGE_POINT] = 1.0, MIN_GRASHOF
     out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
     out[RATIO] = min(out[RATIO], ratio)
-    out[ROOM : ROOM + 4] = -math.inf, math.inf, -math.inf, math.inf
+    out[ROOM] = -math.inf, math.inf, -math.inf, math.inf
     # Only the box is constrained in fits; obstacles are checked on the driven sixbar.
     room = None if problem.space is None else problem.space.shrink_box_for_joints(WORKSPACE_MARGIN * size)
     if room is not None:
         within = (np.array(room) - np.repeat([centre.real, centre.imag], 2)) / size
-        out[ROOM : ROOM + 4] = within
-        for pivot in range(2):
-            at = slice(BOXES + 4 * pivot, BOXES + 4 * pivot + 4)
+        out[ROOM] = within
+        for at in (INPUT_BOX, OUTPUT_BOX):
             out[at] = np.where(np.arange(4) % 2, np.minimum(out[at], within), np.maximum(out[at], within))
     return out
 
