@@ -31,17 +31,56 @@ from kinematics.arrays import Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import place_with_slopes
+from synthesis.numerics.array_layout import ArrayLayout
 
-FAMILY_INDEX, SIGN_INDEX, FULL_TURN_INDEX = range(3)
-"""Indices in a setting: the chart's family, the assembly sign, and whether the crank rotates fully."""
+SETTING = ArrayLayout(
+    family=1,
+    sign=1,
+    full_turn=1,
+    links=2,
+    ratio=1,
+    input_box=4,
+    output_box=4,
+    point_box=4,
+    cosine=1,
+    change_point=1,
+    given_pivots=4,
+    moving_box=4,
+)
+"""Setting of a fit: a linkage's type and its constraints. Infinite without a constraint; 0 for a minimum length or
+share."""
 
-LINKS, RATIO, BOXES, POINT_BOX, COSINE, CHANGE_POINT, GIVEN_PIVOTS, MOVING = 3, 5, 6, 14, 18, 19, 20, 24
-"""Indices of the constraints in a setting: minimum and maximum length, link ratio, boxes (x from, to, y from, to) of O2
-and O4 and of P on the coupler, cosine of the minimum transmission angle, minimum of s₁, s₂, s₃ as a share of all links
-together, given coordinates (O2, O4; NaN if free), box of both A and B. Infinite without a constraint; 0 for a minimum
-length or share."""
+FAMILY_INDEX, SIGN_INDEX = SETTING.index("family"), SETTING.index("sign")
+"""The chart's family, and the assembly sign."""
 
-SETTING_SIZE = 28
+FULL_TURN_INDEX = SETTING.index("full_turn")
+"""Whether the crank rotates fully."""
+
+LINKS, RATIO = SETTING.slice("links"), SETTING.index("ratio")
+"""Minimum and maximum length of a link, and maximum link ratio."""
+
+INPUT_BOX, OUTPUT_BOX = SETTING.slice("input_box"), SETTING.slice("output_box")
+"""Boxes (x from, to, y from, to) of O2 and of O4."""
+
+BOXES = SETTING.slice("input_box", "output_box")
+"""Both of these boxes."""
+
+POINT_BOX = SETTING.slice("point_box")
+"""Box of P on the coupler."""
+
+COSINE = SETTING.index("cosine")
+"""Cosine of the minimum transmission angle."""
+
+CHANGE_POINT = SETTING.index("change_point")
+"""Minimum of s₁, s₂, s₃ as a share of all links together."""
+
+GIVEN_PIVOTS = SETTING.slice("given_pivots")
+"""Given coordinates of O2 and O4; NaN if free."""
+
+MOVING = SETTING.slice("moving_box")
+"""Box of both A and B."""
+
+SETTING_SIZE = SETTING.size
 """Number of entries of a setting that are constraints; a fit's own entries follow them."""
 
 EQUATION_COUNT = 4
@@ -72,7 +111,7 @@ def compute_margins(
     turn : float64, shape (n,)
         Derivatives of the first of these angles by the unknowns.
     setting : float64, shape (SETTING_SIZE or more,)
-        See :data:`LINKS`.
+        See :data:`SETTING`.
     values, gradients : float64, shapes (LIMIT_COUNT,) and (LIMIT_COUNT, n)
         Written; gradients only where the value is finite.
     """
@@ -104,7 +143,7 @@ def _write_length_margins(
     next number."""
     for i in range(4):
         for side in range(2):
-            limit = setting[LINKS + side]
+            limit = setting[LINKS][side]
             # A limit of 0 or ∞ is no constraint and would make the logarithm infinite.
             if 0.0 < limit < np.inf:
                 toward = 1.0 if side == 0 else -1.0
@@ -147,13 +186,13 @@ def _write_pivot_margins(
     for pivot in range(2):
         for axis in range(2):
             for side in range(2):
-                limit = setting[BOXES + 4 * pivot + 2 * axis + side]
+                limit = setting[BOXES][4 * pivot + 2 * axis + side]
                 if abs(limit) < np.inf:
                     toward = 1.0 if side == 0 else -1.0
                     place = _compute_coordinate(x, lengths, slopes, pivot, axis, toward, gradients[number])
                     values[number] = toward * (place - limit)
                 number += 1
-            given = setting[GIVEN_PIVOTS + 2 * pivot + axis]
+            given = setting[GIVEN_PIVOTS][2 * pivot + axis]
             if not math.isnan(given):
                 # Equations stand behind all inequalities, where the augmented Lagrangian expects them.
                 at = LIMIT_COUNT - EQUATION_COUNT + 2 * pivot + axis
@@ -183,7 +222,7 @@ def _write_coupler_point_margins(x: Real, setting: Real, values: Real, gradients
     """Write the distances of P from the sides of its box in the coupler's frame; return the next number."""
     for axis in range(2):
         for side in range(2):
-            limit = setting[POINT_BOX + 2 * axis + side]
+            limit = setting[POINT_BOX][2 * axis + side]
             if abs(limit) < np.inf:
                 # The sign makes both sides positive inside the box.
                 toward = 1.0 if side == 0 else -1.0
@@ -210,7 +249,7 @@ def _write_moving_pivot_margins(
 
     A moving pivot is a point of the coupler with the coordinates (0, 0) or (b, 0), and moves as P does.
     """
-    box = setting[MOVING : MOVING + 4]
+    box = setting[MOVING]
     if not (np.abs(box) < np.inf).any():
         return number + 8
     # Reuse the derivatives of P: A and B are coupler points with known local coordinates.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Result, Verification, optional_field
 from synthesis.model.dimension import INERTIA, Angle, Force, Grade, Length, Mass, Torque, Unbalance
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import Skeleton
 
 Inertia = Annotated[float, INERTIA]
@@ -169,7 +170,7 @@ class BalancedDesign(Answer):
     """A linkage with its counterweights and its verification."""
 
     mechanism: BalancedLinkage
-    dynamics: dict[str, Any] = Field(
+    dynamics: JsonObject = Field(
         description="The whole block `dynamics` including the counterweights, in the form of `POST /v1/analyses`."
     )
     counterweights: list[Counterweight]

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.balancing.statement.counterweights import Counterweights, ForceCaps, ForceWeights
 from synthesis.kinds.balancing.statement.rotor import RotorBase
 from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import Sweep
 from synthesis.model.problem import Contradiction
 
-EXAMPLE_FOURBAR: dict[str, Any] = {
+EXAMPLE_FOURBAR: JsonObject = {
     "mechanism": {
         "type": "fourbar",
         "fixed_pivots": {"input": [0.0, 0.0], "output": [280.0, 0.0]},
@@ -133,7 +134,7 @@ class BalancingProblem(RotorBase):
         "gears on the cranks of a fourbar whose coupler's centre of gravity is on the line of its pins. minimize: the "
         "`objective` is as small as the counterweights permit, with a proven bound.",
     )
-    mechanism: dict[str, Any] | None = Field(default=None, description="Linkage, as in `POST /v1/analyses`.")
+    mechanism: JsonObject | None = Field(default=None, description="Linkage, as in `POST /v1/analyses`.")
     motion: Sweep = Field(
         default=Sweep(),
         description="Motion of a linkage; by default a full turn at 1 rad/s, or for a driven slider from toggle to "

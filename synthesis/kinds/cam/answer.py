@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -36,13 +36,15 @@ from synthesis.kinds.cam.follower_loads import (
     press_follower,
 )
 from synthesis.kinds.cam.problem import CamProblem
-from synthesis.kinds.cam.program.composition import Composition, compute_root_mean_square
+from synthesis.kinds.cam.program.composition import Composition
+from synthesis.kinds.cam.program.criterion import compute_root_mean_square
 from synthesis.kinds.cam.program.derivative_warnings import describe_excesses
 from synthesis.kinds.cam.sizing.sizing import Size
 from synthesis.kinds.cam.statement.followers import RateRange
 from synthesis.kinds.cam.statement.segments import Move
 from synthesis.model.answer import Check
 from synthesis.model.dimension import FORCE
+from synthesis.model.json_object import JsonObject
 from synthesis.results.candidate_log import CandidateLog
 from synthesis.verification.checks import check_minimum
 
@@ -248,7 +250,7 @@ def check_forces(problem: CamProblem, forces: CamForces | None) -> list[Check]:
     ]
 
 
-def compute_motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
+def compute_motion_metrics(problem: CamProblem, program: Program) -> JsonObject:
     """Compute the metrics of the motion program alone, which do not depend on the cam."""
     _, v, a, j = program.peaks
     torque = find_extremes(

@@ -27,7 +27,8 @@ from synthesis.kinds.cam.answer import (
 from synthesis.kinds.cam.design import BarrelCamDesign, BarrelMetrics, CamResult
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.profile import build_barrel_mechanism, choose_profile_angles, refine_angles
-from synthesis.kinds.cam.program.composition import Composition, compute_min_pitch_radius
+from synthesis.kinds.cam.program.composition import Composition
+from synthesis.kinds.cam.program.radius_limits import compute_min_pitch_radius
 from synthesis.kinds.cam.sizing.critical_points import find_smallest_allowed
 from synthesis.kinds.cam.sizing.resolution import resolve_profile
 from synthesis.kinds.cam.sizing.sizing import MAX_RADIUS, RADIUS_MARGIN, Size

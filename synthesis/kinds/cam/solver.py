@@ -36,15 +36,13 @@ from synthesis.kinds.cam.dynamics.overturning import compute_overturning_moment,
 from synthesis.kinds.cam.follower_loads import get_arm_length
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.profile import build_cam_mechanism, choose_profile_angles, refine_angles
-from synthesis.kinds.cam.program.composition import (
-    Composition,
-    NoProgram,
-    compose,
+from synthesis.kinds.cam.program.composition import Composition, NoProgram, compose
+from synthesis.kinds.cam.program.optimal import GRID_STEP_COUNTS
+from synthesis.kinds.cam.program.radius_limits import (
     compute_min_face_radius,
     compute_min_pitch_radius,
     get_roller_radius_range,
 )
-from synthesis.kinds.cam.program.optimal import GRID_STEP_COUNTS
 from synthesis.kinds.cam.sizing.resolution import resolve_profile
 from synthesis.kinds.cam.sizing.sizing import (
     RollerLimits,

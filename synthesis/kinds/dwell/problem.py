@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
@@ -69,7 +69,7 @@ class SliderOutput(Statement):
     stroke: PositiveLength = Field(description="Stroke of the output, length units.")
 
 
-def _get_tag(statement: Any) -> str | None:
+def _get_tag(statement: object) -> str | None:
     kind = statement.get("type", "rocker") if isinstance(statement, dict) else getattr(statement, "type", None)
     return f"<{kind}>" if kind in ("rocker", "slider") else None
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.answer import Reachable
+from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import TaskEasing
 
 
@@ -13,7 +12,7 @@ def _shorten_dwells(problem: DwellProblem, share: float) -> DwellProblem:
     return problem.with_shorter_dwells(share)
 
 
-def _list_dwells(problem: DwellProblem) -> dict[str, Any]:
+def _list_dwells(problem: DwellProblem) -> JsonObject:
     """Return the dwells of a problem in degrees of the crank, in the field that the client used."""
     if problem.dwells is None:
         return {"dwell_angle": problem.dwell_angle}

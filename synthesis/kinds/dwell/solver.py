@@ -141,12 +141,12 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
             progress(n / len(searches), f"driving outputs on coupler curves ({name})")
         begun = _find_starts(problem, search, rng)
         span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
-        told = report_candidates(begun, progress, span, "refining {next} of at most {all}")
+        candidates = report_candidates(begun, progress, span, "refining {next} of at most {all}")
         # Every type gets its own share of designs, so that none is crowded out by the first.
         enough = len(sifting.passed) + SUFFICIENT_DESIGNS
         # Few starts of placed dwells become still enough: refine many, and drive only the best.
         if problem.has_placed_dwells:
-            refined, tried = _refine_starts(problem, search.kind, told, rng)
+            refined, tried = _refine_starts(problem, search.kind, candidates, rng)
             again = _refine_at_larger_angles(problem, search.kind, refined)
             refined, tried = [*refined, *again], tried + len(again)
             stillest = _select_for_driving(problem, refined)
@@ -155,7 +155,7 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
             sifting.reject("not_at_rest", tried - len(stillest))
             sifting.reject(OUTRANKED_REASON, len(stillest) - driven)
         else:
-            sifting.verify_candidates(told, partial(_drive_start, problem, search.kind), enough)
+            sifting.verify_candidates(candidates, partial(_drive_start, problem, search.kind), enough)
     progress(1.0, "verified")
     drawn = RANDOM_SOURCE if any(search.kind == "triad" for search in searches) else CURVE_SOURCE
     return DwellResult(
@@ -180,13 +180,13 @@ def _find_starts(problem: DwellProblem, search: _Search, rng: np.random.Generato
     places = tuple(math.nan if wanted.place is None else wanted.place for wanted in problem.dwell_requests)
     if problem.dwells is None and len(dwells) == 2:
         places = LOW_PLACE, HIGH_PLACE
-    asked = Requirements(dwells, places, way, _get_min_transmission(problem), _get_max_link_ratio(problem))
+    requirements = Requirements(dwells, places, way, _get_min_transmission(problem), _get_max_link_ratio(problem))
     if not problem.has_placed_dwells:
-        return find_starts(search.kind, asked, rng, MAX_STARTS)
+        return find_starts(search.kind, requirements, rng, MAX_STARTS)
     kind, carrier, turning = search[1:]
     if turning is None:
-        return stephenson_2_starts.find_triad_starts(asked, rng, RANDOM_EFFORT.starts)
-    return find_placed_starts(kind, carrier, turning, asked, rng, CURVE_EFFORT.starts)
+        return stephenson_2_starts.find_triad_starts(requirements, rng, RANDOM_EFFORT.starts)
+    return find_placed_starts(kind, carrier, turning, requirements, rng, CURVE_EFFORT.starts)
 
 
 def warm_up() -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, JsonValue
 
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, SPEED
 from synthesis.model.dynamics.loads import FULL_TURN, Interpolation, PairRows, Turns, find_period_error
 from synthesis.model.dynamics.request import METRES_PER_UNIT, FlywheelSpec, LoadedLinkage
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Contradiction, PositiveLength, PositiveNumber, ProblemBase, Range, Statement
 
 EXAMPLE_TORQUE: list[JsonValue] = [
@@ -40,7 +41,7 @@ class TorqueTable(Statement):
 class Machine(Statement):
     """A linkage driven by the shaft, with its masses and loads; its torque is computed at constant speed."""
 
-    mechanism: dict[str, Any] = Field(description="Mechanism as in `POST /v1/analyses`; its input is the shaft.")
+    mechanism: JsonObject = Field(description="Mechanism as in `POST /v1/analyses`; its input is the shaft.")
     dynamics: LoadedLinkage
 
 

@@ -35,13 +35,13 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
         return FlywheelResult(designs=[], search=sifting.build_search("exact"), summary=text, fluctuation=None)
     found = flywheel.compute_table_fluctuation(course.angle, course.demand, smooth=course.smooth)
     progress(0.3, "sizing")
-    asked = _compute_fluctuation(problem, course, found)
-    said = []
+    fluctuation = _compute_fluctuation(problem, course, found)
+    remarks = []
     wheels = []
-    for form in problem.forms if asked.inertia > 0.0 else ():
-        wheel = _size_wheel(problem, found, asked.inertia, form)
+    for form in problem.forms if fluctuation.inertia > 0.0 else ():
+        wheel = _size_wheel(problem, found, fluctuation.inertia, form)
         if wheel is None:
-            said.append(f"No {form} of the required inertia fits within the limits.")
+            remarks.append(f"No {form} of the required inertia fits within the limits.")
         else:
             wheels.append(wheel)
     progress(0.5, "integrating the speed")
@@ -50,8 +50,8 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
     return FlywheelResult(
         designs=sifting.select_designs(lambda designs: sort_designs(designs, _get_mass)),
         search=sifting.build_search("exact", complete=not sifting.rejected),
-        summary=" ".join([_write_summary(problem, asked, sifting), *said]),
-        fluctuation=asked,
+        summary=" ".join([_write_summary(problem, fluctuation, sifting), *remarks]),
+        fluctuation=fluctuation,
     )
 
 

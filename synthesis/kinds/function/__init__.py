@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from synthesis.kinds.function.design import FunctionDesign, FunctionMechanism, FunctionResult
 from synthesis.kinds.function.gallery import GALLERY
 from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import Kind, Progress, TableColumns
 
 __all__ = ["KIND"]
@@ -32,7 +31,7 @@ def _warm_up() -> None:
     warm_up()
 
 
-def _list_warm_up_problems() -> list[dict[str, Any]]:
+def _list_warm_up_problems() -> list[JsonObject]:
     from synthesis.kinds.function.warm_up_problems import list_warm_up_problems
 
     return list_warm_up_problems()

@@ -82,8 +82,8 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
 
 def _solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve for the sixbars that support the given constraints; report the types that do not."""
-    found, told = solve_sixbars(problem.sixbar_problem, progress), _describe_dropped(problem)
-    return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
+    found, remark = solve_sixbars(problem.sixbar_problem, progress), _describe_dropped(problem)
+    return found.model_copy(update={"summary": f"{found.summary} {remark}"}) if remark else found
 
 
 def _describe_dropped(problem: FunctionProblem) -> str:
@@ -134,7 +134,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
     return FunctionResult(
         designs=sifting.select_designs(partial(rank_by_error, problem)),
         search=sifting.build_search("sixbar_search"),
-        summary=_describe_result(problem, sifting) + search.told,
+        summary=_describe_result(problem, sifting) + search.remark,
     )
 
 
@@ -153,10 +153,10 @@ def merge_type_results(problem: FunctionProblem, simple: FunctionResult, found: 
         better = [design for design in better if design.metrics.min_transmission_angle > angle]
     offered = merge_alternatives(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
-    told = _describe_comparison(problem, sound, plain, sixbars or better) + (
+    remark = _describe_comparison(problem, sound, plain, sixbars or better) + (
         describe_alternatives(problem, len(offered), len(sixbars)) if plain and better else ""
     )
-    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
+    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, order)
 
 
 def _describe_comparison(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from synthesis.model.json_object import JsonObject
 
 
-def list_warm_up_problems() -> list[dict[str, Any]]:
+def list_warm_up_problems() -> list[JsonObject]:
     """Return problems with forces, and for sixbars of each type."""
     forces = {
         "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},

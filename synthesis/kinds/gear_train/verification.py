@@ -168,9 +168,9 @@ def _check_types(
 
 def _is_as_requested(requested: RequestedStage, made: Stage) -> bool:
     """Return whether a stage has all requested values, and its ring in the requested place."""
-    said = {name: getattr(requested, name) for name in ("type", *FIELD_STAGE_TYPES)}
+    requested_values = {name: getattr(requested, name) for name in ("type", *FIELD_STAGE_TYPES)}
     ring = made.driver if requested.ring == "driver" else made.driven
-    return all(value is None or getattr(made, name) == value for name, value in said.items()) and (
+    return all(value is None or getattr(made, name) == value for name, value in requested_values.items()) and (
         requested.type != "internal" or ring == max(made.driver, made.driven)
     )
 
@@ -185,8 +185,8 @@ def _describe_shafts(train: OrdinaryTrain) -> list[TurningShaft]:
         if abs(along) > 1.0 - PARALLEL_TOLERANCE:
             turns = "same" if along * speed > 0 else "opposite"
         # Adding 0.0 turns a rounded −0.0 into 0.0.
-        told = None if train.is_parallel else tuple(float(round(part, AXIS_DIGITS)) + 0.0 for part in axis)
-        shafts.append(TurningShaft(speed=Ratio.from_fraction(speed), turns=turns, axis=told))
+        reported_axis = None if train.is_parallel else tuple(float(round(part, AXIS_DIGITS)) + 0.0 for part in axis)
+        shafts.append(TurningShaft(speed=Ratio.from_fraction(speed), turns=turns, axis=reported_axis))
     return shafts
 
 

@@ -203,8 +203,8 @@ def _write_summary(
 ) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, RatchetDesign):
-        told = "None exists" if complete else "None found"
-        return f"{told}: {sifting.format_reasons()}."
+        verdict = "None exists" if complete else "None found"
+        return f"{verdict}: {sifting.format_reasons()}."
     mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
     pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"
     size = f"diameter {metrics.size:.6g} {unit}"

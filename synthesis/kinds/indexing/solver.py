@@ -213,8 +213,8 @@ def _write_summary(
 ) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, IndexingDesign):
-        told = "None exists" if complete else "None found"
-        return f"{told}: {sifting.format_reasons()}."
+        verdict = "None exists" if complete else "None found"
+        return f"{verdict}: {sifting.format_reasons()}."
     metrics, unit = best.metrics, problem.length_unit
     size = f"its size is {metrics.size:.6g} {unit}"
     if metrics.sized_by is not None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.gallery import GALLERY
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import Kind, Progress, TableColumns
 from synthesis.model.linkage.answer import LinkageDesign, LinkageMechanism
 
@@ -43,7 +43,7 @@ def _warm_up() -> None:
         _solve(MotionProblem.model_validate(example), lambda fraction, message: None)
 
 
-def _list_warm_up_problems() -> list[dict[str, Any]]:
+def _list_warm_up_problems() -> list[JsonObject]:
     from synthesis.kinds.motion.warm_up_problems import list_warm_up_problems
 
     return list_warm_up_problems(KIND.examples)

@@ -65,8 +65,8 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
 def _solve_sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for the sixbars that support the given constraints; report the types that do not."""
     found = solve_sixbars(problem, problem.sixbars, progress)
-    told = _describe_unclassed(problem)
-    return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
+    remark = _describe_unclassed(problem)
+    return found.model_copy(update={"summary": f"{found.summary} {remark}"}) if remark else found
 
 
 def _describe_unclassed(problem: MotionProblem) -> str:
@@ -89,25 +89,25 @@ def _merge_by_error(problem: MotionProblem, simple: MotionResult, found: MotionR
     sound = [design for design in plain if has_good_transmission(problem, design)]
     alone = [design for design in better if has_good_transmission(problem, design)]
     if not plain:
-        told = (
+        remark = (
             "No fourbar or slider-crank found satisfies all constraints; "
             f"{'sixbars do' if better else 'neither does a sixbar'}."
         )
     elif not sound and alone:
-        better, told = alone, "No fourbar or slider-crank found transmits well enough; sixbars do"
+        better, remark = alone, "No fourbar or slider-crank found transmits well enough; sixbars do"
     else:
         # Compare with simpler linkages that could be used; if none can, with all of them.
         least = min(map(get_rms_error, sound or plain))
         better = [design for design in better if get_rms_error(design) <= ERROR_RATIO * least]
-        told = f"The best fourbar or slider-crank has a root-mean-square residual of {100.0 * least:.3g} %"
-        told += "; sixbars have at most half of that" if better else ", and no sixbar found has half of that."
+        remark = f"The best fourbar or slider-crank has a root-mean-square residual of {100.0 * least:.3g} %"
+        remark += "; sixbars have at most half of that" if better else ", and no sixbar found has half of that."
     # Drop simpler linkages that transmit badly if sixbars can replace them.
     kept = (sound or plain) if better else plain
     offered = merge_alternatives(problem.max_designs, kept, better, make_ranking(problem))
     sixbars = [design for design in offered if any(design is one for one in better)]
     if plain and better:
-        told += describe_alternatives(problem, len(offered), len(sixbars))
-    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), told, make_ranking(problem))
+        remark += describe_alternatives(problem, len(offered), len(sixbars))
+    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, make_ranking(problem))
 
 
 def merge_type_results(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
@@ -126,14 +126,14 @@ def merge_type_results(problem: MotionProblem, simple: MotionResult, found: Moti
     offered = merge_alternatives(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
     if not plain:
-        told = _describe_without_simple(problem, simple, better)
+        remark = _describe_without_simple(problem, simple, better)
     else:
-        told = f"The best fourbar or slider-crank has a minimum transmission angle of {best:.1f}°"
+        remark = f"The best fourbar or slider-crank has a minimum transmission angle of {best:.1f}°"
         if not better:
-            told += ", and no sixbar found exceeds it."
+            remark += ", and no sixbar found exceeds it."
         else:
-            told += f"; sixbars exceed it{describe_alternatives(problem, len(offered), len(sixbars))}"
-    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
+            remark += f"; sixbars exceed it{describe_alternatives(problem, len(offered), len(sixbars))}"
+    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, order)
 
 
 def _describe_without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:

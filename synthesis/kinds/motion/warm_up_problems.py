@@ -3,30 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-_FORCES: dict[str, Any] = {
+from synthesis.model.json_object import JsonObject
+
+_FORCES: JsonObject = {
     "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
     "constraints": {"max_drive_torque": 1e6},
     "max_designs": 1,
 }
 """Bodies, and a limit of forces that every design keeps."""
 
-_MANUFACTURE: dict[str, Any] = {
+_MANUFACTURE: JsonObject = {
     "round": {"length": 0.5, "coordinates": 0.5},
     "tolerances": {"length": 0.1},
     "quality": {"max_error": 1e3},
     "samples": 100,
 }
 
-_WORKSPACE: dict[str, Any] = {
+_WORKSPACE: JsonObject = {
     "box": [[-1e3, -1e3], [1e3, 1e3]],
     "obstacles": [{"circle": {"center": [900.0, 900.0], "radius": 1.0}}],
 }
 """A workspace far larger than any design."""
 
 
-def list_warm_up_problems(examples: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def list_warm_up_problems(examples: Sequence[JsonObject]) -> list[JsonObject]:
     """Return problems with forces, manufacture, a workspace, a slider, and sixbars of each type and on a given chain.
 
     Parameters

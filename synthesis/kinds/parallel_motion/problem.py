@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -55,7 +55,7 @@ class SourceLinkage(Statement):
 
     @model_validator(mode="before")
     @classmethod
-    def check_is_fourbar(cls, given: Any) -> Any:
+    def check_is_fourbar(cls, given: object) -> object:
         """Reject mechanisms other than a fourbar, whose cognates guide the body."""
         if isinstance(given, dict) and given.get("type", "fourbar") != "fourbar":
             raise PydanticCustomError(

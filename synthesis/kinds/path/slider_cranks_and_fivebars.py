@@ -15,7 +15,7 @@ from __future__ import annotations
 import cmath
 import math
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +25,13 @@ from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, com
 from synthesis.fit.coupler_curve import place_linkage
 from synthesis.kinds.path.curve.fits import list_cognates
 from synthesis.kinds.path.curve.random_linkages import compute_cycle
-from synthesis.kinds.path.curve.shape_matching import find_similar
+from synthesis.kinds.path.curve.shape_matching import compare_shapes, select_most_similar
 from synthesis.kinds.path.curve.solver import solve_curve_match
 from synthesis.kinds.path.curve.stance_fit import fit_simple_stance, pack_no_stance, pack_stance
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.curve_constraints import compute_pivot_limits
-from synthesis.kinds.path.residuals.curve_descent import Descent, descend, measure_pivot_violations
+from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend, measure_pivot_violations
 from synthesis.kinds.path.task.ranking import FAR_REASON, USABLE_ANGLE, build_ordering, drop_straying
 from synthesis.kinds.path.task.target_curve import interpolate_crank_angles, sample_smooth_steps
 from synthesis.kinds.path.verification.linkage import verify_traced
@@ -165,40 +165,37 @@ def _find_fits(search: _Search, drawn: int, followed: int, again: int, progress:
             progress((n + 0.8 * share) / len(tasks), "shapes of linkages compared")
 
         rng = np.random.default_rng([problem.seed, n + len(tasks) * again])
-        starts = find_similar(
+        compared = compare_shapes(
             family,
             target,
             problem.closed,
             drawn,
-            followed,
             ratio=ratio,
-            longest=longest,
             seed=int(rng.integers(2**31)),
             progress=report_comparison,
         )
+        starts = select_most_similar(compared, followed, longest)
         if not len(starts.x):
             continue
         cycle = compute_cycle(ratio) if family == GEARED_FIVEBAR else 0.0
         # Slider-cranks repeat after one turn; their cycle of 0 only switches off the jam check.
         span = cycle or 2.0 * math.pi
         theta = np.array([interpolate_crank_angles(places, angles, problem.closed, span) for angles in starts.theta])
-        settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
-        rough = descend(family, starts.x, starts.sign, theta, points, iterations=MAX_ROUGH_STEPS, **settings)
+        limits = LinkageLimits(ratio, longest, cycle, within)
+        rough = descend(family, starts.x, starts.sign, theta, points, limits, iterations=MAX_ROUGH_STEPS)
         begun = _PartialFits(rough.x, starts.sign, rough.theta, rough.cost)
         # Geared fivebars have so many dimensions that most descents to exact points end in local minima.
         if family == GEARED_FIVEBAR and not problem.is_fitted:
-            begun = _perturb_best(begun, points, settings, rng)
+            begun = _perturb_best(begun, points, limits, rng)
         best = np.argsort(begun.cost, kind="stable")[: MAX_REFINED if problem.is_fitted else None]
         best = best[np.isfinite(begun.cost[best])]
         if not len(best):
             continue
-        fine = descend(
-            family, begun.x[best], begun.sign[best], begun.theta[best], points, iterations=MAX_STEPS, **settings
-        )
+        fine = descend(family, begun.x[best], begun.sign[best], begun.theta[best], points, limits, iterations=MAX_STEPS)
         # No angle is enforced for a rocker: if one is required, linkages that satisfy it come first.
         sign, arrived = begun.sign[best], np.full(len(best), problem.constraints.min_transmission_angle is None)
         if problem.stance is not None or (problem.is_fitted and (family == SLIDER_CRANK or np.isfinite(within).any())):
-            fine, sign, arrived = _fit_constrained(search, family, fine, sign, points, settings)
+            fine, sign, arrived = _fit_constrained(search, family, fine, sign, points, limits)
         for k in np.argsort(fine.cost, kind="stable"):
             if math.isfinite(fine.cost[k]) and (problem.is_fitted or fine.cost[k] <= COST_TOLERANCE):
                 theta_k = float(fine.theta[k, 0])
@@ -225,7 +222,7 @@ def _list_min_angles(problem: PathProblem) -> list[float]:
 
 
 def _fit_constrained(
-    search: _Search, family: int, fits: Descent, sign: Real, points: Complex, settings: dict[str, Any]
+    search: _Search, family: int, fits: Descent, sign: Real, points: Complex, limits: LinkageLimits
 ) -> tuple[Descent, Real, NDArray[np.bool_]]:
     """Lead fits to the stance, to their required fixed pivots and to one or more transmission angles.
 
@@ -242,8 +239,8 @@ def _fit_constrained(
         spec = pack_no_stance(len(points))
     else:
         first, last = problem.stance.points
-        spec = pack_stance(problem, search.size, first, last, settings["cycle"] or 2.0 * math.pi)
-    within = settings["within"]
+        spec = pack_stance(problem, search.size, first, last, limits.cycle or 2.0 * math.pi)
+    within = limits.within
     given = np.flatnonzero(within[:, 0] == within[:, 1])
     angles = _list_min_angles(problem) if family == SLIDER_CRANK else [0.0]
     # Every fit is tried with every angle; the better ones are selected after verification.
@@ -258,7 +255,7 @@ def _fit_constrained(
                 arrived[k] = True
             elif math.isfinite(cost[k]):
                 end = fit_simple_stance(
-                    family, x[k], float(signs[k]), theta[k], points, spec, cosine=float(cosines[k]), **settings
+                    family, x[k], float(signs[k]), theta[k], points, spec, limits, float(cosines[k])
                 )
                 if end is not None:
                     x[k], theta[k], cost[k], arrived[k] = end.x, end.theta, 2.0 * end.cost, True
@@ -289,9 +286,7 @@ class _PartialFits(NamedTuple):
     cost: Real
 
 
-def _perturb_best(
-    ends: _PartialFits, points: Complex, settings: dict[str, Any], rng: np.random.Generator
-) -> _PartialFits:
+def _perturb_best(ends: _PartialFits, points: Complex, limits: LinkageLimits, rng: np.random.Generator) -> _PartialFits:
     """Perturb the best geared fivebars and descend again, until enough meet the points; return old and new ends.
 
     Places and angles are in the points' unit and in radians; logarithms of lengths are changed the most.
@@ -310,7 +305,7 @@ def _perturb_best(
         change[:, : logs.start] *= NON_LOG_KICK_SHARE
         change[:, logs.stop :] *= NON_LOG_KICK_SHARE
         x, sign = found.x[chosen] + change, found.sign[chosen]
-        near = descend(GEARED_FIVEBAR, x, sign, found.theta[chosen], points, iterations=MAX_KICKED_STEPS, **settings)
+        near = descend(GEARED_FIVEBAR, x, sign, found.theta[chosen], points, limits, iterations=MAX_KICKED_STEPS)
         more = _PartialFits(near.x, sign, near.theta, near.cost)
         found = _PartialFits(*(np.concatenate(both) for both in zip(found, more, strict=True)))
     return found
@@ -318,10 +313,10 @@ def _perturb_best(
 
 def _build_from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
     """Return the geared fivebars that draw the curves of the best fourbars."""
-    asked = problem.model_copy(
+    fourbar_problem = problem.model_copy(
         update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES, "layout": None, "stance": None}
     )
-    fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
+    fourbars = solve_curve_match(fourbar_problem, lambda share, message: progress(0.7, message))
     cognates: list[Mechanism] = []
     for design in fourbars.designs:
         joints = (to_complex(design.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4", "P"))

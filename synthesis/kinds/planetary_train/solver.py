@@ -153,13 +153,13 @@ class _Ranking:
         made = [one.mechanism for one in borne.best]
         sifting.verify_best(made, self._sound - borne.failed, partial(_build_design, problem))
         search = sifting.build_search("exhaustive", complete=borne.proven and not sifting.failed)
-        told = ""
+        remark = ""
         if sifting.passed:
-            told = f" {describe_power_rejections(borne.failed)}"
+            remark = f" {describe_power_rejections(borne.failed)}"
         return PlanetaryResult(
             designs=sifting.select_designs(list),
             search=PlanetarySearch(**dict(search), judged=borne.judged, every_judged=borne.every),
-            summary=self._explain_too_weak(borne) or f"{self._write_summary(borne.ties)}{told}",
+            summary=self._explain_too_weak(borne) or f"{self._write_summary(borne.ties)}{remark}",
             ties=borne.ties,
             pareto=[
                 _build_carrying_pareto(problem, one) for one in borne.front if _is_verified(problem, one.mechanism)

@@ -79,8 +79,8 @@ def _compute_strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism)
     ]
     gears = {name: _build_gear(mechanism, arrangement, name) for name in mechanism.teeth}
     unit = 1000.0 * METRES_PER_UNIT[problem.length_unit]
-    told = describe_strengths(arrangement, gears, loads, mechanism.planets, stated, mechanism.face_widths, unit)
-    return [None if one is None else PairStrength(**one) for one in told]
+    strengths = describe_strengths(arrangement, gears, loads, mechanism.planets, stated, mechanism.face_widths, unit)
+    return [None if one is None else PairStrength(**one) for one in strengths]
 
 
 def _check_strength(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[Check]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider, slotted
+from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider, slotted_link
 from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMechanisms, QuickReturnResult, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
@@ -37,8 +37,10 @@ TYPE_FUNCTIONS: dict[str, _TypeFunctions] = {
     "offset_slider_crank": _TypeFunctions(
         offset_slider.compute_ratio_range, offset_slider.build_offset_slider_cranks, proven=True
     ),
-    "crank_shaper": _TypeFunctions(slotted.compute_crank_shaper_range, slotted.build_crank_shapers, proven=False),
-    "whitworth": _TypeFunctions(slotted.compute_whitworth_range, slotted.build_whitworths, proven=False),
+    "crank_shaper": _TypeFunctions(
+        slotted_link.compute_crank_shaper_range, slotted_link.build_crank_shapers, proven=False
+    ),
+    "whitworth": _TypeFunctions(slotted_link.compute_whitworth_range, slotted_link.build_whitworths, proven=False),
     "drag_link_slider": _TypeFunctions(drag_link.compute_slider_range, drag_link.build_drag_link_sliders, proven=False),
 }
 """Every type by its name."""

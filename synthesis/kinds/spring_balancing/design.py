@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Result, Verification, optional_field
 from synthesis.model.dimension import TORSION_STIFFNESS, Angle, Force, Length, Stiffness, Torque
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import Skeleton
 
 TorsionStiffness = Annotated[float, TORSION_STIFFNESS]
@@ -69,7 +70,7 @@ class SprungDesign(Answer):
     """A linkage with its springs and its verification."""
 
     mechanism: SprungLinkage
-    dynamics: dict[str, Any] = Field(
+    dynamics: JsonObject = Field(
         description="The whole block `dynamics` including the springs, in the form of `POST /v1/analyses`."
     )
     springs: list[FoundSpring] = Field(description="The springs; those that would not improve the balance are omitted.")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.linkages.loaded_mechanism import find_driven_errors
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
 from synthesis.mechanisms.machine import locate_on_link
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import Sweep
 
 MAX_DISTANCE = 1e4
@@ -17,7 +17,7 @@ MAX_DISTANCE = 1e4
 
 
 def find_spring_errors(
-    requested: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, springs: Sequence[SoughtSpring]
+    requested: JsonObject, dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, springs: Sequence[SoughtSpring]
 ) -> list[tuple[str, str]]:
     """Return errors of a mechanism, its masses and loads, its motion and the requested springs, by their fields."""
     mechanism, faults = find_driven_errors(requested, dynamics, unit, motion)

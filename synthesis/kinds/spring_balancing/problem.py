@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
 from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import Sweep
 from synthesis.model.problem import Contradiction, ProblemBase
 
-EXAMPLE_LEVER: dict[str, Any] = {
+EXAMPLE_LEVER: JsonObject = {
     "mechanism": {
         "type": "skeleton",
         "skeleton": {
@@ -25,7 +26,7 @@ EXAMPLE_LEVER: dict[str, Any] = {
 }
 """A lever with a weight, used by the examples."""
 
-EXAMPLE_ROCKER: dict[str, Any] = {
+EXAMPLE_ROCKER: JsonObject = {
     "mechanism": {
         "type": "fourbar",
         "fixed_pivots": {"input": [0.0, 0.0], "output": [300.0, 0.0]},
@@ -133,7 +134,7 @@ class SpringBalancingProblem(ProblemBase):
     )
 
     kind: Literal["spring_balancing"]
-    mechanism: dict[str, Any] = Field(description="Linkage, as in `POST /v1/analyses`.")
+    mechanism: JsonObject = Field(description="Linkage, as in `POST /v1/analyses`.")
     motion: Holding = Field(
         default=Holding(),
         description="Motion; by default a full turn, or for a driven slider from toggle to toggle; at rest without a "

@@ -83,8 +83,8 @@ def _write_summary(sifting: CandidateLog[SprungDesign], proved: bool) -> str:
     if metrics.exact:
         energy = "" if metrics.energy_variation is None else " and the potential energy constant"
         return f"The springs balance the linkage exactly: the drive is zero{energy} over the motion."
-    said = f"The springs reduce the drive to {metrics.value:.4g} of its unbalanced value"
+    reduction = f"The springs reduce the drive to {metrics.value:.4g} of its unbalanced value"
     if metrics.bound is None:
-        return f"{said}. This is the best found, not a proven minimum."
+        return f"{reduction}. This is the best found, not a proven minimum."
     known = f"no such springs reduce it below {metrics.bound:.4g}"
-    return f"{said}; {known}." if proved else f"{said}; {known}. The values in between are undecided."
+    return f"{reduction}; {known}." if proved else f"{reduction}; {known}. The values in between are undecided."

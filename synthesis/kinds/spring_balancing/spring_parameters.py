@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from kinematics.arrays import Complex, Real
 from synthesis.kinds.spring_balancing.effects import Setting, compute_effects, compute_free_limits
 from synthesis.kinds.spring_balancing.program import compute_norm
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
+from synthesis.model.json_object import JsonObject
 
 NEGLIGIBLE_EFFECT = 1e-7
 """Effect of a spring on the drive, as a share of the unbalanced drive, below which it may be omitted."""
@@ -104,24 +105,24 @@ def _select_needed(setting: Setting, springs: list[Spring]) -> list[Spring]:
     return kept
 
 
-def list_blocks(setting: Setting, springs: Sequence[Spring]) -> list[dict[str, Any]]:
+def list_blocks(setting: Setting, springs: Sequence[Spring]) -> list[JsonObject]:
     """List the springs in the form of the block ``dynamics``."""
     scale, stated = setting.task.machine.scale, setting.problem.springs
-    written: list[dict[str, Any]] = []
+    written: list[JsonObject] = []
     for spring in springs:
-        asked = stated[spring.number]
-        if asked.ends is None:
+        request = stated[spring.number]
+        if request.ends is None:
             free = float(np.degrees(spring.free))
-            written.append({"torsion": spring.rate, "links": list(asked.links or ()), "free_angle": free})
+            written.append({"torsion": spring.rate, "links": list(request.links or ()), "free_angle": free})
             continue
         ends = [
             {"link": end.link, "point": [(at / scale).real, (at / scale).imag]}
-            for end, at in zip(asked.ends, spring.ends, strict=True)
+            for end, at in zip(request.ends, spring.ends, strict=True)
         ]
-        one: dict[str, Any] = {"ends": ends, "rate": spring.rate, "free_length": spring.free / scale}
+        one: JsonObject = {"ends": ends, "rate": spring.rate, "free_length": spring.free / scale}
         if spring.preload:
             one["preload"] = spring.preload
-        if asked.form is not None and not asked.without_length:
-            one["one_sided"] = "pull" if asked.form == "extension" else "push"
+        if request.form is not None and not request.without_length:
+            one["one_sided"] = "pull" if request.form == "extension" else "push"
         written.append(one)
     return written

@@ -8,13 +8,14 @@ constant, a third route without any force.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.dynamics.balance import compute_balance
+from kinematics.dynamics.loads import Load
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import Reactions, compute_reactions
@@ -33,6 +34,7 @@ from synthesis.mechanisms.machine import build_machine
 from synthesis.mechanisms.skeleton import GivenSkeleton, describe_skeleton
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import Skeleton
 from synthesis.verification.checks import LIMIT_SLACK, check_error, check_maximum, check_minimum
 
@@ -107,9 +109,11 @@ def verify_springs(
     if exact and varied is not None:
         checks.append(check_error("potential_energy", varied, ZERO_TOLERANCE))
     built = machine.loads[len(machine.loads) - len(springs) :]
-    told = [_describe_spring(setting, spring, load, after) for spring, load in zip(springs, built, strict=True)]
-    checks += _check_presence(problem, told)
-    checks += _check_limits(problem, told)
+    found_springs = [
+        _describe_spring(setting, spring, load, after) for spring, load in zip(springs, built, strict=True)
+    ]
+    checks += _check_presence(problem, found_springs)
+    checks += _check_limits(problem, found_springs)
     checks += _check_places(setting, springs)
     metrics = SpringMetrics(
         value=value,
@@ -125,14 +129,14 @@ def verify_springs(
     return SprungDesign(
         mechanism=answer,
         dynamics=block,
-        springs=told,
-        warnings=[*_describe_gaps(before), *_list_warnings(problem, told)],
+        springs=found_springs,
+        warnings=[*_describe_gaps(before), *_list_warnings(problem, found_springs)],
         verification=Verification.from_checks(checks),
         metrics=metrics,
     )
 
 
-def build_answer(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLinkage, dict[str, Any]]:
+def build_answer(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLinkage, JsonObject]:
     """Build mechanism and block of an answer."""
     stated = setting.problem.dynamics.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     block = {**stated, "springs": [*stated.get("springs", []), *list_blocks(setting, springs)]}
@@ -140,7 +144,7 @@ def build_answer(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLin
     return SprungLinkage(skeleton=skeleton), block
 
 
-def build_answer_machine(problem: SpringBalancingProblem, mechanism: SprungLinkage, block: dict[str, Any]) -> Machine:
+def build_answer_machine(problem: SpringBalancingProblem, mechanism: SprungLinkage, block: JsonObject) -> Machine:
     """Build the machine of an answer's mechanism and block, read like in an analysis.
 
     Raises
@@ -174,7 +178,7 @@ def _measure_variation(
     return varied / float(np.ptp(first)) if np.ptp(first) > 0.0 else None
 
 
-def _describe_spring(setting: Setting, spring: Spring, load: Any, after: DrivenMachine) -> FoundSpring:
+def _describe_spring(setting: Setting, spring: Spring, load: Load, after: DrivenMachine) -> FoundSpring:
     """Describe a spring in the units of the answer, measured over the motion."""
     scale, stated = setting.task.machine.scale, setting.problem.springs[spring.number]
     if isinstance(load, TorsionSpring):
@@ -228,34 +232,34 @@ def _check_limits(problem: SpringBalancingProblem, springs: Sequence[FoundSpring
             shares.setdefault(name, []).append(limit / value if value > 0.0 else np.inf)
 
     for spring in springs:
-        asked = problem.springs[spring.number]
-        low, high = asked.rates
-        add_minimum("rate", spring.rate if asked.links is None else spring.torsion, low)
-        add_maximum("rate", spring.rate if asked.links is None else spring.torsion, high)
+        request = problem.springs[spring.number]
+        low, high = request.rates
+        add_minimum("rate", spring.rate if request.links is None else spring.torsion, low)
+        add_maximum("rate", spring.rate if request.links is None else spring.torsion, high)
         # Torsion springs have angles and torques instead of lengths and forces.
-        if asked.links is not None:
+        if request.links is not None:
             assert spring.free_angle is not None
-            lowest, highest = asked.free_angles
+            lowest, highest = request.free_angles
             outside_of.append(float(np.radians(max(lowest - spring.free_angle, spring.free_angle - highest, 0.0))))
-            add_maximum("max_torque", spring.max_torque, asked.max_torque)
+            add_maximum("max_torque", spring.max_torque, request.max_torque)
             continue
-        if not asked.without_length:
-            add_minimum("free_length", spring.free_length, asked.free_lengths[0])
-            add_maximum("free_length", spring.free_length, asked.free_lengths[1])
-            add_minimum("preload", spring.preload, asked.preloads[0])
-            add_maximum("preload", spring.preload, asked.preloads[1])
-        add_minimum("min_length", spring.min_length, asked.min_length)
-        add_maximum("max_length", spring.max_length, asked.max_length)
-        add_maximum("max_force", spring.max_force, asked.max_force)
+        if not request.without_length:
+            add_minimum("free_length", spring.free_length, request.free_lengths[0])
+            add_maximum("free_length", spring.free_length, request.free_lengths[1])
+            add_minimum("preload", spring.preload, request.preloads[0])
+            add_maximum("preload", spring.preload, request.preloads[1])
+        add_minimum("min_length", spring.min_length, request.min_length)
+        add_maximum("max_length", spring.max_length, request.max_length)
+        add_maximum("max_force", spring.max_force, request.max_force)
         # Deflection counts in both directions from the free length.
         free = spring.free_length or 0.0
         longest, shortest = spring.max_length or 0.0, spring.min_length or 0.0
-        add_maximum("max_deflection", max(longest - free, free - shortest), asked.max_deflection)
+        add_maximum("max_deflection", max(longest - free, free - shortest), request.max_deflection)
         # An extension spring must never be shorter than its free length.
-        if asked.form == "extension" and free > 0.0:
+        if request.form == "extension" and free > 0.0:
             add_minimum("extension", shortest, free)
         # A compression spring must never be longer than its free length.
-        if asked.form == "compression":
+        if request.form == "compression":
             add_maximum("compression", longest, free)
     checks = [
         check_maximum(name, max(listed_shares), 1.0, slack=LIMIT_SLACK if name in EXACT_LIMITS else LIMIT_TOLERANCE)
@@ -299,10 +303,12 @@ def _describe_gaps(before: DrivenMachine) -> list[str]:
 
 
 def _list_warnings(problem: SpringBalancingProblem, springs: Sequence[FoundSpring]) -> list[str]:
-    said = []
+    warnings = []
     for spring in springs:
         diameter = problem.springs[spring.number].diameter
         if diameter is not None and (spring.free_length or 0.0) > MAX_SLENDERNESS * diameter:
             slender = (spring.free_length or 0.0) / diameter
-            said.append(f"springs/{spring.number}: {slender:.3g} times as long as wide; it buckles unless it is guided")
-    return said
+            warnings.append(
+                f"springs/{spring.number}: {slender:.3g} times as long as wide; it buckles unless it is guided"
+            )
+    return warnings

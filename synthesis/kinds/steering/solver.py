@@ -18,13 +18,13 @@ from synthesis.results.ranking import rank_designs
 def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResult:
     """Solve a problem of steering."""
     mechanisms: list[SteeringMechanisms] = []
-    said = []
+    remarks = []
     progress(0.0, "fitting Ackermann's linkage")
     if problem.mechanism in ("ackermann", "auto"):
         linkages = find_ackermann_linkages(problem)
         mechanisms += linkages
         if not linkages:
-            said.append("No Ackermann linkage with such arms reaches the lock.")
+            remarks.append("No Ackermann linkage with such arms reaches the lock.")
     progress(0.8, "verifying")
     if problem.mechanism in ("davis", "auto"):
         mechanisms += build_davis_gears(problem)
@@ -36,7 +36,7 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
     return SteeringResult(
         designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
         search=sifting.build_search("steering", complete=complete),
-        summary=" ".join([_describe_result(sifting, complete=complete), *said]),
+        summary=" ".join([_describe_result(sifting, complete=complete), *remarks]),
     )
 
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Integers, Real
 from synthesis.kinds.gear_train.construction.train import build_mechanism as ordinary_mechanism
+from synthesis.kinds.gear_train.design import GearTrainMechanism
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search.enumeration import list_every_train as every_ordinary
 from synthesis.kinds.gear_train.search.pairing_rules import MAX_STAGES
@@ -21,10 +22,12 @@ from synthesis.kinds.gear_train.search.search import Train
 from synthesis.kinds.gear_train.search.task import build_task
 from synthesis.kinds.gear_train.statement.stages import compute_sense
 from synthesis.kinds.planetary_train.build import build_mechanism as planetary_mechanism
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism
 from synthesis.kinds.planetary_train.enumeration import SoundTrains
 from synthesis.kinds.planetary_train.enumeration import list_every_train as every_planetary
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.train_series.units import build_unit_problem
+from synthesis.kinds.train_series.design import UnitMechanism
+from synthesis.kinds.train_series.units import Unit, build_unit_problem
 
 MAX_RATIO = 1e9
 """Maximum ratio of a unit, and inverse of the minimum: no larger ratio may be requested."""
@@ -36,7 +39,7 @@ class Batch(NamedTuple):
     over: Integers
     under: Integers
     total: Integers
-    made: Callable[[int], Any]
+    build_train: Callable[[int], UnitMechanism | None]
 
 
 class Catalogue(NamedTuple):
@@ -63,13 +66,14 @@ class Catalogue(NamedTuple):
         """Return input speed over output speed, exact."""
         return Fraction(int(self.over[entry]), int(self.under[entry]))
 
-    def train(self, row: int) -> Any:
+    def build_train(self, row: int) -> UnitMechanism | None:
         """Build the mechanism of a row of ``trains``; None if it needs an idler and there is none."""
         batch, at = self.trains[row]
-        return self.batches[batch].made(int(at))
+        mechanism: UnitMechanism | None = self.batches[batch].build_train(int(at))
+        return mechanism
 
 
-def build_catalogue(unit: Any, length_unit: str) -> Catalogue:
+def build_catalogue(unit: Unit, length_unit: str) -> Catalogue:
     """Build the catalogue of a consistent unit."""
     problem = build_unit_problem(unit, Fraction(1), length_unit)
     batches = list(_list_ordinary(problem) if isinstance(problem, GearTrainProblem) else _list_planetary(problem))
@@ -109,7 +113,7 @@ def _reduce_batch(batch: Batch, number: int) -> tuple[Integers, Integers, Intege
 def _list_planetary(problem: PlanetaryProblem) -> Iterator[Batch]:
     for sound in every_planetary(problem):
 
-        def build_train(row: int, sound: SoundTrains = sound) -> Any:
+        def build_train(row: int, sound: SoundTrains = sound) -> PlanetaryMechanism:
             return planetary_mechanism(problem, sound.build_candidate(row), problem.module)
 
         yield Batch(sound.over, sound.under, sound.total, build_train)
@@ -119,7 +123,7 @@ def _list_ordinary(problem: GearTrainProblem) -> Iterator[Batch]:
     task = build_task(problem, coprime=problem.hunting_tooth == "require")
     every = every_ordinary(task)
 
-    def build_train(row: int) -> Any:
+    def build_train(row: int) -> GearTrainMechanism | None:
         numbers = every.rows[row].tolist()
         k = sum(n > 0 for n in numbers[:MAX_STAGES])
         parts = (tuple(numbers[start : start + k]) for start in (0, MAX_STAGES, 2 * MAX_STAGES))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.train_series.units import Unit, Units, estimate_train_count, find_unit_contradictions
 from synthesis.model.gears.ratio_target import RatioTarget, parse_decimal, parse_target
 from synthesis.model.gears.request import ExactRatio
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Contradiction, ProblemBase
 
 MAX_PLANETARY_TRAINS = 50_000_000
@@ -22,7 +23,7 @@ MAX_ORDINARY_TRAINS = 5_000_000
 MAX_LARGER_HALF, MAX_SMALLER_HALF = 2_000_000_000, 100_000_000
 """Maximum number of series of the units on the larger and on the smaller side of the search: minutes at worst."""
 
-EXAMPLE_UNIT: dict[str, Any] = {
+EXAMPLE_UNIT: JsonObject = {
     "type": "planetary_train",
     "arrangement": "simple",
     "input": "sun",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any
 
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.solver import SEARCH_NOTE
@@ -106,8 +105,9 @@ def _is_searched_in_steps(problem: TrainSeriesProblem) -> bool:
 
 
 def _build_mechanism(catalogues: list[Catalogue], rows: tuple[int, ...], one: Series) -> TrainSeriesMechanism | None:
-    units: list[Any] = [catalogue.train(row) for catalogue, row in zip(catalogues, rows, strict=True)]
-    if any(unit is None for unit in units):
+    built = [catalogue.build_train(row) for catalogue, row in zip(catalogues, rows, strict=True)]
+    units = [unit for unit in built if unit is not None]
+    if len(units) < len(built):
         return None
     return TrainSeriesMechanism(units=units, ratio=Ratio.from_fraction(one.ratio))
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, create_model
 
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.statement.stages import RequestedStage
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.problem import Contradiction, ProblemBase, Statement
 
@@ -32,7 +33,7 @@ Trains = GearTrainProblem | PlanetaryProblem
 PROBLEM_TYPES: dict[str, type[Trains]] = {"planetary_train": PlanetaryProblem, "gear_train": GearTrainProblem}
 
 
-def _create_unit_model(name: str, kind: str, words: str) -> Any:
+def _create_unit_model(name: str, kind: str, words: str) -> type[Statement]:
     """Create the model of a unit: the fields of its kind's problem without those of the series."""
     fields: dict[str, Any] = {"type": (Literal[kind], ...)}
     for field, info in PROBLEM_TYPES[kind].model_fields.items():
@@ -47,7 +48,16 @@ def _create_unit_model(name: str, kind: str, words: str) -> Any:
 
 
 if TYPE_CHECKING:
-    Unit = Any
+
+    class Unit(Statement):
+        """The fields that are read by name, all but ``type`` from units of ordinary gears only."""
+
+        type: Literal["planetary_train", "gear_train"]
+        stages: list[RequestedStage] | None
+        max_stages: int | None
+        hunting_tooth: str
+        reverted: bool
+
 else:
     PlanetaryUnit = _create_unit_model(
         "PlanetaryUnit", "planetary_train", "A planetary train of a series, with the constraints of its kind."
@@ -59,7 +69,7 @@ else:
         "direction it has no idler: its number of stages determines its direction.",
     )
 
-    def _get_tag(statement: Any) -> str | None:
+    def _get_tag(statement: object) -> str | None:
         kind = statement.get("type") if isinstance(statement, dict) else getattr(statement, "type", None)
         return f"<{kind}>" if isinstance(kind, str) and kind in PROBLEM_TYPES else None
 
@@ -76,23 +86,23 @@ else:
 Units = Annotated[list[Unit], Field(min_length=2, max_length=4)]
 
 
-def build_unit_problem(unit: Any, ratio: Fraction, length_unit: str) -> Any:
-    """Build the problem of a unit's kind for exactly this ratio, a :data:`Trains`; for ordinary gears its magnitude.
+def build_unit_problem(unit: Unit, ratio: Fraction, length_unit: str) -> Trains:
+    """Build the problem of a unit's kind for exactly this ratio; for ordinary gears its magnitude.
 
     The direction of ordinary gears is given by a field of its own.
     """
-    asked = abs(ratio) if unit.type == "gear_train" else ratio
+    magnitude = abs(ratio) if unit.type == "gear_train" else ratio
     stated = {field: getattr(unit, field) for field in type(unit).model_fields if field != "type"}
     if unit.type == "gear_train" and unit.stages is None and unit.max_stages is None:
         stated["max_stages"] = DEFAULT_STAGE_COUNT
     return PROBLEM_TYPES[unit.type].model_validate(
-        {**stated, "kind": unit.type, "ratio": str(asked), "tolerance": 0.0, "length_unit": length_unit}
+        {**stated, "kind": unit.type, "ratio": str(magnitude), "tolerance": 0.0, "length_unit": length_unit}
     )
 
 
-def find_unit_contradictions(unit: Any, length_unit: str) -> list[Contradiction]:
+def find_unit_contradictions(unit: Unit, length_unit: str) -> list[Contradiction]:
     """Return the contradictions of a unit, by its fields."""
-    faults: list[Contradiction] = build_unit_problem(unit, Fraction(1), length_unit).find_contradictions()
+    faults = build_unit_problem(unit, Fraction(1), length_unit).find_contradictions()
     if unit.type == "gear_train" and unit.hunting_tooth == "prefer":
         detail = "a unit of a series has no trains of equal error to prefer from; choose any or require"
         faults.append(Contradiction("/hunting_tooth", detail))
@@ -107,9 +117,9 @@ def find_unit_contradictions(unit: Any, length_unit: str) -> list[Contradiction]
     return faults
 
 
-def estimate_train_count(unit: Any, length_unit: str) -> int:
+def estimate_train_count(unit: Unit, length_unit: str) -> int:
     """Estimate the maximum number of trains of a consistent unit."""
-    problem: Trains = build_unit_problem(unit, Fraction(1), length_unit)
+    problem = build_unit_problem(unit, Fraction(1), length_unit)
     if isinstance(problem, GearTrainProblem):
         return _estimate_ordinary_count(problem)
     total = 0

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 from fractions import Fraction
-from typing import Any
 
 from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import GROUND, Mesh, Train, solve_speeds
@@ -17,11 +16,17 @@ from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainMetri
 from synthesis.kinds.gear_train.verification import build_train
 from synthesis.kinds.gear_train.verification import verify as verify_ordinary
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.verification import measure
 from synthesis.kinds.planetary_train.verification import verify as verify_planetary
-from synthesis.kinds.train_series.design import TrainSeriesDesign, TrainSeriesMechanism, TrainSeriesMetrics
+from synthesis.kinds.train_series.design import (
+    TrainSeriesDesign,
+    TrainSeriesMechanism,
+    TrainSeriesMetrics,
+    UnitMechanism,
+)
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
-from synthesis.kinds.train_series.units import build_unit_problem
+from synthesis.kinds.train_series.units import Trains, build_unit_problem
 from synthesis.model.answer import Check, Verification
 
 
@@ -121,11 +126,16 @@ def _check_ratio(
     return error, checks
 
 
-def _verify_unit(problem: Any, unit: Any) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
+def _verify_unit(
+    problem: Trains, unit: UnitMechanism
+) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
     """Verify the unit by its own kind, for exactly the ratio that the unit has."""
-    if isinstance(unit, PlanetaryMechanism):
+    if isinstance(problem, PlanetaryProblem):
+        # Mechanisms keep the order of the requested units, so that each has the kind of its problem.
+        assert isinstance(unit, PlanetaryMechanism)
         verification = verify_planetary(problem, unit)
         coaxial = all(check.passed for check in verification.checks if check.name == "coaxial")
         return (verification, measure(problem, unit)) if coaxial else None
+    assert isinstance(unit, GearTrainMechanism)
     design = verify_ordinary(problem, unit)
     return None if design is None else (design.verification, design.metrics)

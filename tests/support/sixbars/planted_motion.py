@@ -15,7 +15,7 @@ import statistics
 import numpy as np
 
 from synthesis.kinds.motion.sixbar import residuals as rows
-from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, A, B, J, compute_signed_sine
+from synthesis.kinds.motion.sixbar.dyad_assembly import O4, Q1, Q2, A, B, J, compute_signed_sine
 from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES
 from synthesis.kinds.motion.task.ranking import get_rms_error
 from tests.support.sixbars.motion import REACH, SIXBARS, SOUND, Task, false_claim, solved, sound, stated
@@ -33,7 +33,7 @@ def planted(rng: np.random.Generator, make: int, count: int) -> Task:
     at, turns = np.empty(6, complex), np.ones(4, complex)
     while True:
         z = rng.normal(size=7) + 1j * rng.normal(size=7)
-        setting = np.zeros(rows.SETTING_SIZE)
+        setting = np.zeros(rows.SETTING.size)
         sides = (
             math.copysign(1.0, compute_signed_sine(z[A], z[O4], z[B])),
             math.copysign(1.0, compute_signed_sine(z[Q1], z[Q2], z[J])),

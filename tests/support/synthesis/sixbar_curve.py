@@ -10,7 +10,6 @@ from synthesis.fit.constraints import (
     BOXES,
     CHANGE_POINT,
     COSINE,
-    EQUATION_COUNT,
     FAMILY_INDEX,
     FULL_TURN_INDEX,
     GIVEN_PIVOTS,
@@ -47,10 +46,10 @@ def stated(form, signs, x):
     out[FAMILY_INDEX], out[CARRIER], out[HOLDER] = form
     out[SIGN_INDEX], out[SIDE] = signs
     out[FULL_TURN_INDEX], out[CHANGE_POINT], out[STEPS], out[BACK] = 1.0, 1e-6, 12, 0.3
-    out[LINKS], out[LINKS + 1], out[RATIO], out[COSINE] = 0.6, 1.2, 1.5, math.cos(math.radians(60.0))
-    out[BOXES : BOXES + 8] = np.tile([x[0] + 0.1, x[0] + 0.3], 4)
-    out[MOVING : MOVING + 4] = -0.1, 0.1, -0.1, 0.1
-    out[POINT_BOX : POINT_BOX + 4] = -math.inf, math.inf, -math.inf, math.inf
-    out[GIVEN_PIVOTS : GIVEN_PIVOTS + EQUATION_COUNT] = 0.1, math.nan, math.nan, 0.2
-    out[ROOM : ROOM + 4] = -0.4, 0.3, -0.3, 0.4
+    out[LINKS], out[RATIO], out[COSINE] = (0.6, 1.2), 1.5, math.cos(math.radians(60.0))
+    out[BOXES] = np.tile([x[0] + 0.1, x[0] + 0.3], 4)
+    out[MOVING] = -0.1, 0.1, -0.1, 0.1
+    out[POINT_BOX] = -math.inf, math.inf, -math.inf, math.inf
+    out[GIVEN_PIVOTS] = 0.1, math.nan, math.nan, 0.2
+    out[ROOM] = -0.4, 0.3, -0.3, 0.4
     return out

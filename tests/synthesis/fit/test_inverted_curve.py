@@ -122,7 +122,7 @@ def test_boxes_and_given_coordinates_are_of_the_pivots_on_the_ground():
     form = ALL[0]
     x, signs, theta = drawn(form)
     setting = stated(form, signs, x)
-    setting[GIVEN_PIVOTS : GIVEN_PIVOTS + EQUATION_COUNT] = 0.1, 0.2, 0.3, 0.4
+    setting[GIVEN_PIVOTS] = 0.1, 0.2, 0.3, 0.4
     limits, points = count_sixbar_margins(setting), np.array([[0.0, 0.0, 0.0, 1.0]])
     state = np.concatenate([theta[:1], np.zeros(limits)])
     residuals, jacobian = np.zeros(count_sixbar_rows(1, setting)), np.zeros((count_sixbar_rows(1, setting), UNKNOWNS))
@@ -130,10 +130,10 @@ def test_boxes_and_given_coordinates_are_of_the_pivots_on_the_ground():
     o2 = complex(x[0], x[1])
     o4 = o2 + np.exp(x[DYAD + 1] + 1j * x[2])
     assert state[-EQUATION_COUNT:] == pytest.approx([o2.real - 0.1, o2.imag - 0.2, o4.real - 0.3, o4.imag - 0.4])
-    low, high = setting[BOXES], setting[BOXES + 1]
+    low, high = setting[BOXES][:2]
     sides = [way for at in (o2.real, o2.imag, o4.real, o4.imag) for way in (at - low, high - at)]
     assert state[1 + limits - LIMIT_COUNT + PIVOT_MARGIN :][:8] == pytest.approx(sides)
     made = build_fitted_sixbar("stephenson_2", form, x, signs, theta[0], 0j, 1.0)
     names = "input", "input_arm", "link_4_arm", "link_4_side", "output", "ground"
-    margins = sorted(math.log(made.links[name] / setting[LINKS]) for name in names)
+    margins = sorted(math.log(made.links[name] / setting[LINKS][0]) for name in names)
     assert sorted(state[1:13:2]) == pytest.approx(margins)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from kinematics.dynamics.bodies import join_bodies, make_body
 from kinematics.dynamics.machine import Machine
 from synthesis.kinds.balancing.linkage.force_balance import Weight
 from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.json_object import JsonObject
 
 
-def add_weights(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight]) -> dict[str, Any]:
+def add_weights(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight]) -> JsonObject:
     """Add weights to the block: links with a weight become bodies with mass, centre of gravity and inertia."""
     stated = block.model_dump(mode="json", by_alias=True, exclude_unset=True)
     bodies = dict(stated.get("bodies", {}))
@@ -27,7 +27,7 @@ def add_weights(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight
     return {**stated, "bodies": bodies}
 
 
-def with_inertias(block: dict[str, Any], inertias: dict[str, float]) -> dict[str, Any]:
+def with_inertias(block: JsonObject, inertias: dict[str, float]) -> JsonObject:
     """Add links that have an inertia but no mass to the block."""
     turned = {link: {"mass": 0.0, "inertia": inertia} for link, inertia in inertias.items()}
     return {**block, "bodies": {**block["bodies"], **turned}}

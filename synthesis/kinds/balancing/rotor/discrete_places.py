@@ -90,16 +90,16 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
     groups = [(used, np.flatnonzero(head.used == used)) for used in np.unique(head.used).tolist()]
     best: dict[int, Choice] = {}
     support = _compute_support([places[n] for n in (*first, *second)])
-    asked, complete = 0, True
+    query_count, complete = 0, True
     for branch in _list_branches([len(places[n]) for n in rest], most):
         picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
         left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
         # A branch uses at least these places: prune it if no more places already come nearer than it ever can.
         few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
-        if asked > MAX_QUERIES:
+        if query_count > MAX_QUERIES:
             complete = False
             break
-        asked += BRANCH_COST if rest else 0
+        query_count += BRANCH_COST if rest else 0
         if rest and few and _measure_distance(left, support) >= min(few):
             continue
         for used, at in groups:
@@ -112,7 +112,7 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
                 if count > most:
                     continue
                 distance, index = tree.query(points)
-                asked += len(points)
+                query_count += len(points)
                 n = int(np.argmin(distance))
                 if count not in best or distance[n] < abs(best[count].residual):
                     # Residuals are recomputed from the picks in a fixed order, free of the sums' accumulated

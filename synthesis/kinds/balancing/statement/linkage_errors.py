@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.linkages.loaded_mechanism import find_driven_errors
@@ -11,11 +10,12 @@ from synthesis.kinds.balancing.statement.counterweights import Counterweights
 from synthesis.mechanisms.link_bodies import escape_pointer
 from synthesis.mechanisms.machine import build_machine
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import Sweep
 
 
 def find_linkage_errors(
-    requested: dict[str, Any],
+    requested: JsonObject,
     dynamics: DynamicsBlock,
     unit: LengthUnit,
     motion: Sweep,

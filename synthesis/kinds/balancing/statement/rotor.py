@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -95,7 +95,7 @@ class Influence(Statement):
     trials: list[TrialRun] = Field(min_length=1, max_length=2)
 
 
-def _get_places_tag(value: Any) -> str:
+def _get_places_tag(value: object) -> str:
     return "<angles>" if isinstance(value, list | tuple) else "<count>"
 
 

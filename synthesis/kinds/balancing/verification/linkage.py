@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,7 @@ from synthesis.mechanisms.machine import build_machine
 from synthesis.mechanisms.skeleton import GivenSkeleton, describe_skeleton
 from synthesis.model.answer import Verification
 from synthesis.model.dynamics.request import DynamicsBlock
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import Skeleton
 from synthesis.verification.checks import check_error
 
@@ -146,14 +147,14 @@ def build_answer(
     mechanism: Mechanism,
     weights: Sequence[Weight],
     inertias: dict[str, float],
-) -> tuple[BalancedLinkage, dict[str, Any]]:
+) -> tuple[BalancedLinkage, JsonObject]:
     """Build mechanism and block of an answer."""
     assert problem.dynamics is not None
     block = with_inertias(add_weights(task.machine, problem.dynamics, weights), inertias)
     return BalancedLinkage(skeleton=Skeleton.model_validate(describe_skeleton(mechanism))), block
 
 
-def build_answer_machine(problem: BalancingProblem, mechanism: BalancedLinkage, block: dict[str, Any]) -> Machine:
+def build_answer_machine(problem: BalancingProblem, mechanism: BalancedLinkage, block: JsonObject) -> Machine:
     """Build the machine of an answer's mechanism and block, read like in an analysis."""
     # Read only what the answer states, not the solver's own data.
     built = GivenSkeleton.model_validate(mechanism.model_dump()).build_mechanism()

@@ -1,9 +1,9 @@
 """The motion program of a problem: given segments, automatic laws, optimal runs, and the program's optimality.
 
-Segments with a given law, dwells and polynomials are used unchanged. Automatic segments get the laws whose velocity and
-acceleration fit their neighbours, and among those the best by the criterion: a shortest path over the states at the
-joints. The remaining open segments form runs of neighbouring optimal segments. Each run is one convex program;
-if the criterion belongs to the whole cam (size, contact force), one program covers all runs.
+Segments with a given law, dwells and polynomials are used unchanged. Automatic segments get laws that fit their
+neighbours (:mod:`synthesis.kinds.cam.program.automatic_laws`). The remaining open segments form runs of neighbouring
+optimal segments. Each run is one convex program; if the criterion belongs to the whole cam (size, contact force), one
+program covers all runs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from kinematics.cam.motion.extremes import find_extremes
 from kinematics.cam.motion.laws import LAWS
-from kinematics.cam.motion.pieces import Motion, Pieces
+from kinematics.cam.motion.pieces import Motion
 from kinematics.cam.motion.program import TURN, Program
 from kinematics.cam.motion.segments import Condition as PolynomialCondition
 from kinematics.cam.motion.segments import (
@@ -27,15 +27,18 @@ from kinematics.cam.motion.segments import (
     build_law_segment,
     build_polynomial_segment,
 )
-from synthesis.kinds.cam.follower_loads import (
-    build_follower_load,
-    find_max_rpm,
-    find_weakest_contact,
-    get_arm_length,
-    with_spring,
-)
+from synthesis.kinds.cam.follower_loads import build_follower_load
 from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.program.automatic_laws import choose_laws
 from synthesis.kinds.cam.program.convex_programs import Condition, Demand, Limit
+from synthesis.kinds.cam.program.criterion import (
+    DERIVATIVE_ORDERS,
+    evaluate_criterion,
+    integrate_square,
+    multiply_rates,
+    scale_least_force,
+    scale_preload,
+)
 from synthesis.kinds.cam.program.knots import KnotMotion
 from synthesis.kinds.cam.program.optimal import (
     GRID_STEP_COUNTS,
@@ -49,36 +52,15 @@ from synthesis.kinds.cam.program.optimal import (
     minimize_roller_size,
     minimize_torque,
 )
-from synthesis.kinds.cam.statement.followers import (
-    BarrelRoller,
-    LengthRange,
-    OscillatingFlat,
-    TranslatingFlat,
-    TranslatingRoller,
-)
-from synthesis.kinds.cam.statement.limits import CamLimits
-from synthesis.kinds.cam.statement.segment_ends import END_RATES, State, compute_law_ends
+from synthesis.kinds.cam.program.radius_limits import compute_min_face_radius
+from synthesis.kinds.cam.statement.followers import TranslatingFlat, TranslatingRoller
+from synthesis.kinds.cam.statement.segment_ends import State
 from synthesis.kinds.cam.statement.segments import Dwell, Move, Polynomial
 from synthesis.model.kind import Progress
-
-DERIVATIVE_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
-"""Orders of the derivatives that criteria and limits name."""
-
-JOINT_TOLERANCE = 1e-9
-"""Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
-
-MIN_CURVATURE_RATIO = 1.02
-"""Minimum radius of curvature of the pitch curve over the roller's, for any request: at 1 the cam has a cusp."""
-
-MIN_FACE_RADIUS_SHARE = 0.02
-"""Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge."""
 
 LOOSE_LIMIT_FACTOR = 1e6
 """Limits on a derivative that exceed a unit lift over a unit angle by this factor do not bind on any grid here and
 would only spoil the program's scaling; verification checks them all the same."""
-
-SAMPLE_COUNT = 721
-"""Points of a segment at which laws are compared by a criterion without a closed form; the choice needs no more."""
 
 
 def ignore_progress(fraction: float, message: str) -> None:
@@ -160,9 +142,9 @@ def compose(
             segments.append(build_law_segment(LAWS[law], angle, start, end))
         names.append(law)
     # Automatic segments come first: the optimal runs need the states at both of their ends.
-    refused = _choose_laws(problem, heights, ends, segments, names)
+    refused = choose_laws(problem, heights, ends, segments, names)
     if refused is not None:
-        return refused
+        return NoProgram(refused, proven=False)
     runs = _find_runs(problem, segments)
     best: list[Optimum] = []
     if runs:
@@ -173,214 +155,6 @@ def compose(
     program = Program([segment for segment in segments if segment is not None])
     value = evaluate_criterion(problem, program)
     return Composition(program, tuple(names), value, *_bound_criterion(problem, program, runs, best, value))
-
-
-def evaluate_criterion(problem: CamProblem, program: Program) -> float:
-    """Return the criterion's exact value over the whole program; NaN for the size, which the sizing determines."""
-    name = problem.minimize
-    kind, _, of = name.partition("_")
-    if name == "size":
-        return math.nan
-    if name == "peak_contact_force":
-        top_rpm = find_max_rpm(problem)
-        problem, _ = with_spring(problem, program)
-        load, speed = build_follower_load(problem)
-        force = find_extremes(lambda at: load.force(program.pieces.motion(at), speed), program.breaks)
-        least = force.least
-        if top_rpm is not None:
-            least = min(least, find_weakest_contact(program, load, top_rpm).force)
-        # A free preload raises the force everywhere by the same amount, until the minimum reaches the
-        # required force.
-        return force.greatest + _compute_extra_preload(problem, least)
-    if kind == "peak":
-        if of == "torque":
-            return find_extremes(lambda at: _multiply_rates(program.pieces.motion(at)), program.breaks).largest
-        return program.peaks[DERIVATIVE_ORDERS[of]].largest
-    if of == "torque":
-        return compute_root_mean_square(program, lambda motion: motion.v * motion.a)
-    return compute_root_mean_square(program, lambda motion: motion[DERIVATIVE_ORDERS[of]])
-
-
-def compute_root_mean_square(program: Program, function: Callable[[Motion], np.ndarray]) -> float:
-    """Return the root mean square of a function of the motion over the whole turn."""
-    return math.sqrt(_integrate_square(program.pieces, function) / TURN)
-
-
-def _integrate_square(pieces: Pieces, function: Callable[[Motion], np.ndarray]) -> float:
-    """Return ∫ f² by Gauss's rule on every piece: exact for polynomials, accurate to rounding for laws with sines."""
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    half = 0.5 * np.diff(pieces.start)
-    values = function(pieces.motion(pieces.start[:-1, None] + half[:, None] * (nodes + 1.0)))
-    return max(float(half @ (values**2 @ weights)), 0.0)
-
-
-def _scale_least_force(problem: CamProblem) -> float:
-    assert problem.dynamics is not None
-    return problem.dynamics.least_force * get_arm_length(problem)
-
-
-def _scale_preload(problem: CamProblem) -> float | None:
-    assert problem.dynamics is not None
-    return None if problem.dynamics.preload is None else problem.dynamics.preload * get_arm_length(problem)
-
-
-def _compute_extra_preload(problem: CamProblem, least: float) -> float:
-    """Return the amount by which a free preload raises a force of minimum ``least``; it is never negative."""
-    return max(_scale_least_force(problem) - least, 0.0) if _scale_preload(problem) is None else 0.0
-
-
-def _multiply_rates(motion: Motion) -> np.ndarray:
-    return np.asarray(motion.v * motion.a)
-
-
-def _choose_laws(
-    problem: CamProblem,
-    heights: Sequence[tuple[float, float]],
-    ends: list[tuple[State, State] | None],
-    segments: list[Segment | None],
-    names: list[str],
-) -> NoProgram | None:
-    """Fill in the automatic segments: the best path over laws that fit at the joints, for each row of neighbours."""
-    count = len(segments)
-    auto = [isinstance(s, Move) and s.law == "auto" for s in problem.segments]
-    if not any(auto):
-        return None
-    # Start behind a segment that is not automatic, so that no row of neighbours is split at the turn's end.
-    first = next((k for k in range(count) if not auto[k]), 0)
-    row: list[int] = []
-    # The sentinel −1 closes the last row.
-    for k in [*((first + n) % count for n in range(count)), -1]:
-        if k >= 0 and auto[k]:
-            row.append(k)
-        elif row:
-            refused = _choose_row(problem, heights, ends, segments, names, row)
-            if refused is not None:
-                return refused
-            row = []
-    return None
-
-
-def _choose_row(
-    problem: CamProblem,
-    heights: Sequence[tuple[float, float]],
-    ends: list[tuple[State, State] | None],
-    segments: list[Segment | None],
-    names: list[str],
-    row: list[int],
-) -> NoProgram | None:
-    """Choose the laws of one row of automatic segments: a shortest path over the states at its joints."""
-    count = len(segments)
-    before, after = ends[row[0] - 1], ends[(row[-1] + 1) % count]
-    # If all segments are automatic the row is a closed ring; it starts and ends at rest, which always fits.
-    closed = len(row) == count
-    enter = (0.0, 0.0) if before is None or closed else before[1][1:]
-    leave = (0.0, 0.0) if after is None or closed else after[0][1:]
-    # Paths to a joint's state: for every state only the cheapest one is kept (dynamic programming).
-    paths: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {enter: (0.0, ())}
-    for n, k in enumerate(row):
-        angle, (start, end) = math.radians(problem.segments[k].angle), heights[k]
-        unit = abs(end - start) / angle
-        following: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {}
-        for state, (cost, chosen) in paths.items():
-            wanted = leave if n == len(row) - 1 else None
-            for name, segment, at_start, at_end in _list_candidates(angle, start, end, state, wanted):
-                # Both states are compared in units of the segment's mean velocity, so that the
-                # tolerance has no dimension.
-                near = (
-                    abs(at_start[0] - state[0]) <= JOINT_TOLERANCE * unit
-                    and abs(at_start[1] - state[1]) <= JOINT_TOLERANCE * unit / angle
-                )
-                if not near or not _is_within_limits(problem, segment):
-                    continue
-                if wanted is not None and not (
-                    abs(at_end[0] - wanted[0]) <= JOINT_TOLERANCE * unit
-                    and abs(at_end[1] - wanted[1]) <= JOINT_TOLERANCE * unit / angle
-                ):
-                    continue
-                total = _add_segment_cost(problem, cost, segment)
-                # States are equal if they agree to seven digits: laws give a few discrete ones, the
-                # polynomial any other.
-                key = (round(at_end[0] / unit, 7), round(at_end[1] * angle / unit, 7))
-                if key not in following or total < following[key][0]:
-                    following[key] = total, (*chosen, (name, segment))
-        paths = {(key[0] * unit, key[1] * unit / angle): value for key, value in following.items()}
-        if not paths:
-            return NoProgram(
-                f"no law fits segment {k} within the limits on velocity, acceleration and jerk", proven=False
-            )
-    _, chosen = min(paths.values(), key=lambda path: path[0])
-    for k, (name, segment) in zip(row, chosen, strict=True):
-        segments[k], names[k] = segment, name
-        ends[k] = _compute_segment_ends(segment)
-    return None
-
-
-def _list_candidates(
-    angle: float, start: float, end: float, enter: tuple[float, float], leave: tuple[float, float] | None
-) -> list[tuple[str, Segment, tuple[float, float], tuple[float, float]]]:
-    """List the named laws, and the polynomial through both end states; with v and a at start and end."""
-    candidates = []
-    for name in END_RATES:
-        # These two have velocity or acceleration jumps at their ends, so that they are only used on request.
-        if name in ("constant_acceleration", "constant_velocity"):
-            continue
-        first, last = compute_law_ends(name, angle, start, end)
-        candidates.append((name, build_law_segment(LAWS[name], angle, start, end), first[1:], last[1:]))
-    leave = (0.0, 0.0) if leave is None else leave
-    # Between two rests the named laws are better than a plain polynomial.
-    if enter != (0.0, 0.0) or leave != (0.0, 0.0):
-        states = ((0.0, start, *enter), (angle, end, *leave))
-        conditions = [PolynomialCondition(at, i, x) for at, *state in states for i, x in enumerate(state)]
-        candidates.append(("polynomial", build_polynomial_segment(angle, conditions), enter, leave))
-    return candidates
-
-
-def _is_within_limits(problem: CamProblem, segment: Segment) -> bool:
-    limits = problem.limits
-    for name, order in DERIVATIVE_ORDERS.items():
-        limit = getattr(limits, name)
-        if limit is not None and segment.extremes(order).largest > limit * (1.0 + JOINT_TOLERANCE):
-            return False
-    return True
-
-
-def _add_segment_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
-    """Return the criterion's value with one more segment: the greater peak, or the sum of squares."""
-    name = problem.minimize
-    kind, _, of = name.partition("_")
-    at = np.linspace(0.0, segment.angle, SAMPLE_COUNT)
-    motion = segment.pieces.motion(at)
-    if name == "size":
-        return max(cost, _estimate_radius(problem, motion))
-    if name == "peak_contact_force":
-        load, speed = build_follower_load(problem)
-        force = load.force(motion, speed)
-        return max(cost, float(force.max()) + _compute_extra_preload(problem, float(force.min())))
-    if of == "torque":
-        values = np.abs(motion.v * motion.a)
-        return max(cost, float(values.max())) if kind == "peak" else cost + float(np.mean(values**2)) * segment.angle
-    if kind == "peak":
-        return max(cost, segment.extremes(DERIVATIVE_ORDERS[of]).largest)
-    return cost + float(np.mean(motion[DERIVATIVE_ORDERS[of]] ** 2)) * segment.angle
-
-
-def _estimate_radius(problem: CamProblem, motion: Motion) -> float:
-    """Estimate the radius that a segment alone requires, accurately enough to compare laws."""
-    if isinstance(problem.follower, TranslatingFlat):
-        return float(np.max(-motion.s - motion.a))
-    # R or d ≥ |v|/tan φ, less the displacement for a radial cam.
-    tangent = math.tan(math.radians(problem.limits.pressure_angle))
-    barrel = isinstance(problem.follower, BarrelRoller)
-    return float(np.max(np.abs(motion.v) / tangent - (0.0 if barrel else motion.s)))
-
-
-def _compute_segment_ends(segment: Segment) -> tuple[State, State]:
-    first = segment.pieces.motion(0.0)
-    last = segment.pieces.motion(segment.angle, before=True)
-    return (
-        (float(first.s), float(first.v), float(first.a)),
-        (float(last.s), float(last.v), float(last.a)),
-    )
 
 
 def _find_runs(problem: CamProblem, segments: Sequence[Segment | None]) -> list[list[int]]:
@@ -499,8 +273,8 @@ def _solve_runs(
             minimize_force(
                 runs,
                 weights,
-                _scale_least_force(problem),
-                _scale_preload(problem),
+                scale_least_force(problem),
+                scale_preload(problem),
                 rest,
                 on_grid=grid_progress.make_callback(0),
             )
@@ -606,7 +380,7 @@ def _bound_criterion(
     given = [segment for k, segment in enumerate(program.segments) if k not in open_]
 
     def evaluate_integrand(motion: Motion) -> np.ndarray:
-        return _multiply_rates(motion) if of == "torque" else motion[DERIVATIVE_ORDERS[of]]
+        return multiply_rates(motion) if of == "torque" else motion[DERIVATIVE_ORDERS[of]]
 
     if kind == "peak":
         peaks = [max(map(abs, _find_range(segment, evaluate_integrand))) for segment in given]
@@ -617,25 +391,5 @@ def _bound_criterion(
     square = sum(
         each.bound**2 * sum(program.segments[k].angle for k in row) for each, row in zip(best, rows, strict=True)
     )
-    square += sum(_integrate_square(segment.pieces, evaluate_integrand) for segment in given)
+    square += sum(integrate_square(segment.pieces, evaluate_integrand) for segment in given)
     return min(math.sqrt(square / TURN), value), scope
-
-
-def get_roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
-    """Return the least and greatest roller radius; None for a flat face."""
-    if isinstance(problem.follower, TranslatingFlat | OscillatingFlat):
-        return None
-    radius = problem.follower.roller_radius
-    return (radius.min, radius.max) if isinstance(radius, LengthRange) else (radius, radius)
-
-
-def compute_min_face_radius(problem: CamProblem) -> float:
-    """Return the least radius of curvature of a cam under a flat face: the limit, or the least that is not an edge."""
-    # On an arm the travel is an angle; the pivot distance turns it into a length.
-    reach = problem.follower.pivot_distance if isinstance(problem.follower, OscillatingFlat) else 1.0
-    return max(problem.limits.min_radius, MIN_FACE_RADIUS_SHARE * problem.program.travel * reach)
-
-
-def compute_min_pitch_radius(limits: CamLimits, roller_radius: float) -> float:
-    """Return the least radius of curvature of the pitch curve: the limit, or the least that avoids a cusp."""
-    return max(limits.curvature_ratio, MIN_CURVATURE_RATIO) * roller_radius

@@ -49,8 +49,8 @@ def describe_excesses(problem: CamProblem, composed: Composition) -> str | None:
     found = find_excesses(problem, composed)
     if not found:
         return None
-    told = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
+    excesses = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
     # A limit is the remedy only if none is given yet.
     unlimited = [name for name in found if getattr(problem.limits, name) is None]
     advice = f"; set a limit on {' or '.join(unlimited)}" if unlimited else ""
-    return f"{told.capitalize()} that of a {PLAIN_LAW} motion of the same lift and angle{advice}."
+    return f"{excesses.capitalize()} that of a {PLAIN_LAW} motion of the same lift and angle{advice}."

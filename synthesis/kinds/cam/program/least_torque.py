@@ -19,7 +19,7 @@ best motion. Two things follow:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -171,7 +171,7 @@ def _solve_linearized(block: Block, measure: str, v: Real, a: Real | None, ceili
     cp = import_cvxpy()
 
     model = BlockModel(block, None)
-    product: Any = cp.multiply(v * model.scale[2], model.states[:, 2])
+    product = cp.multiply(v * model.scale[2], model.states[:, 2])
     if a is not None:
         product = product + cp.multiply(a * model.scale[1], model.states[:, 1]) - v * a
     if measure == "peak":

@@ -54,7 +54,7 @@ def find_placed_starts(
     ----------
     kind, carrier, turning : str
         Output, the link that carries P, and the class of the fourbar.
-    asked : Asked
+    required : Requirements
     rng : Generator
     most : int
         Maximum number of starts.

@@ -12,7 +12,6 @@ length of the coupler and the transmission angle are not convex in K; the descen
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -46,7 +45,7 @@ def minimize_design_error(task: FunctionTask, limits: GeneratorLimits, k: float,
         right = np.cos(theta - out)
     # Columns of unit length keep the program well conditioned when inputs or outputs vary little.
     sizes = np.linalg.norm(matrix, axis=0)
-    cp: Any = import_cvxpy()
+    cp = import_cvxpy()
     x = cp.Variable(3)
     # Normalise the columns for the solver; K = x / sizes.
     first, second = x[0] / sizes[0], x[1] / sizes[1]

@@ -181,12 +181,12 @@ class Descents:
         return _encode_unknowns(kind, one.at), setting, one.at[-1:].copy()
 
     def _pack_setting(self, kind: int, assembly: int, signs: Real, weight: float) -> Real:
-        setting = np.zeros(fit.SETTING_SIZE)
+        setting = np.zeros(fit.SETTING.size)
         setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, assembly, *signs
         setting[[fit.COSINE, fit.RATIO, fit.STRICT]] = self.cosine, self.logratio, weight
-        setting[fit.FREE :] = IS_USED[kind]
+        setting[fit.FREE] = IS_USED[kind]
         # Scales are fixed in the descents; they are part of the samples.
-        setting[[fit.FREE + K, fit.FREE + L]] = 0.0
+        setting[fit.FREE][[K, L]] = 0.0
         return setting
 
 

@@ -16,13 +16,29 @@ from kinematics.arrays import Real
 from kinematics.compiling import njit
 from synthesis.kinds.function.sixbar.kernels import IS_LOGARITHMIC, ROW_SIZE, WATT_2, K, L, follow
 from synthesis.kinds.function.sixbar.link_lengths import MAX_LENGTHS, compute_log_lengths
+from synthesis.numerics.array_layout import ArrayLayout
 from synthesis.numerics.levenberg import ROWS
 
-KIND, ASSEMBLY, SIGN_K, SIGN_L, COSINE, RATIO, STRICT, FREE = range(8)
-"""Indices into a setting: type, assembly, signs of both scales, maximum cosine of a transmission angle, logarithm of
-the maximum link ratio, weight of the limits, and from FREE on the mask of open numbers."""
+SETTING = ArrayLayout(kind=1, assembly=1, sign_k=1, sign_l=1, cosine=1, ratio=1, strict=1, free=ROW_SIZE)
+"""Setting of a sixbar and its limits."""
 
-SETTING_SIZE = FREE + ROW_SIZE
+KIND, ASSEMBLY = SETTING.index("kind"), SETTING.index("assembly")
+"""Type and assembly."""
+
+SIGN_K, SIGN_L = SETTING.index("sign_k"), SETTING.index("sign_l")
+"""Signs of both scales."""
+
+COSINE = SETTING.index("cosine")
+"""Maximum cosine of a transmission angle."""
+
+RATIO = SETTING.index("ratio")
+"""Logarithm of the maximum link ratio."""
+
+STRICT = SETTING.index("strict")
+"""Weight of the limits."""
+
+FREE = SETTING.slice("free")
+"""Mask of the numbers that are free."""
 
 DEFAULT_MAX_RATIO, RATIO_MARGIN = 1e3, 1e-6
 """Default maximum link ratio, and margin in the logarithm of the limit."""
@@ -72,7 +88,7 @@ def evaluate_rows(
     decode_unknowns(kind, x, setting, state, at)
     errors, slopes = np.empty(m), np.zeros((m, ROW_SIZE))
     cosines, by_cosine = np.zeros((m, 2)), np.zeros((m, 2, ROW_SIZE))
-    felt, strict, free = setting[COSINE], setting[STRICT], setting[FREE:]
+    felt, strict, free = setting[COSINE], setting[STRICT], setting[FREE]
     tau = follow(kind, assembly, at, inputs, outputs, felt, errors, slopes, cosines, by_cosine)
     # Not assembled at some input: the step is refused.
     if not math.isfinite(tau):

@@ -168,7 +168,7 @@ class SixbarSearch:
         self._descents = Descents(self.places.points, *limits)
         self._pairs = PairSearch(self.places.points, *limits, CONVERGED_ERROR)
         self.weighed = 0
-        self.told = ""
+        self.remark = ""
         """Statement about all sixbars of a type, for the summary."""
 
     def find_sixbars(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
@@ -241,7 +241,7 @@ class SixbarSearch:
             # The list was cut off at this number, so more may exist.
             at_least = "at least " if met == MAX_FOLLOWED else ""
             which = f"{at_least}{met} of them {choose_word(met, 'meets', 'meet')}" if met else "none of them meets"
-            self.told = (
+            self.remark = (
                 f" All {format_integer(SOLUTION_COUNT)} Watt II solutions for {nine}, real and complex, were computed; "
                 f"{which} all pairs to a millionth of a degree in one assembly."
             )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -16,6 +16,9 @@ from synthesis.model.linkage.type_choice import (
 )
 from synthesis.model.problem import Contradiction
 
+if TYPE_CHECKING:
+    from synthesis.kinds.function.problem import FunctionProblem
+
 Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
 """Sixbar types whose output differs from a fourbar's: in Watt I and Stephenson I sixbars, a fourbar drives the output.
 """
@@ -26,7 +29,7 @@ Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar],
 """A list of types by name, or ``auto`` for the simplest type that is good enough."""
 
 
-def list_unsupported(problem: Any) -> Iterator[Contradiction]:
+def list_unsupported(problem: FunctionProblem) -> Iterator[Contradiction]:
     """Yield the given fields that sixbars do not support."""
     if problem.slides:
         yield Contradiction("/mechanism", "the output of sixbars rotates; remove them from mechanisms")
@@ -35,7 +38,7 @@ def list_unsupported(problem: Any) -> Iterator[Contradiction]:
     yield from find_unsupported_by_sixbars(problem)
 
 
-def check_types(problem: Any) -> list[Contradiction]:
+def check_types(problem: FunctionProblem) -> list[Contradiction]:
     """Return contradictions between the requested types and the other fields."""
     stated = problem.mechanisms
     if stated is None or isinstance(stated, str):

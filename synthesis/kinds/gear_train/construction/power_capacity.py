@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cmp_to_key
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kinematics.gear.train import TrainStage
 from synthesis.kinds.gear_train.construction.train import Known, assemble_mechanism, iterate_idler_choices, list_choices
@@ -241,7 +241,7 @@ def list_arrangements(problem: GearTrainProblem, task: Task, train: Train) -> li
                 drivers, driven = zip(*meshes, strict=True)
                 found.add(Train(drivers, driven, tuple(train.marks[i] for i in places)))
 
-    def key(one: Train) -> tuple[Any, ...]:
+    def key(one: Train) -> tuple[bool, float, bool, Train]:
         shared = problem.hunting_tooth == "prefer" and not has_hunting_teeth(one)
         return shared, max(max(mesh) / min(mesh) for mesh in one.meshes), one != train, one
 

@@ -40,12 +40,14 @@ def _add_type(problem: GearTrainProblem, task: Task, number: int, stage: Stage) 
     if not task.stated:
         return stage
     stated = task.stated[number]
-    told = {name: stated.get_or_default(name) for name in FIELD_STAGE_TYPES if stated.get_or_default(name) is not None}
-    told["type"] = stated.type
+    values = {
+        name: stated.get_or_default(name) for name in FIELD_STAGE_TYPES if stated.get_or_default(name) is not None
+    }
+    values["type"] = stated.type
     if stated.type == "internal":
         one, two = compute_ring_addenda(stage.driver, stage.driven, math.radians(problem.pressure_angle))
-        told["addendum"] = GearNumbers(driver=one, driven=two)
-    return stage.model_copy(update=told)
+        values["addendum"] = GearNumbers(driver=one, driven=two)
+    return stage.model_copy(update=values)
 
 
 def list_choices(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:

@@ -175,7 +175,7 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
     n = int(numbers.max()) + 1
     present = np.zeros(n, np.bool_)
     present[numbers] = True
-    asked = [_mask_makeable(one, present) for one in demands]
+    makeable = [_mask_makeable(one, present) for one in demands]
     standard = 0.5 * np.add.outer(np.arange(n), np.arange(n))
     limits = tuple(problem.get_distance_limits(stage) for stage in range(rows))
     if problem.shares_distance:
@@ -184,7 +184,7 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
                 module * wide * _find_intervals(pairs, *_convert_to_modules(limits[0], module * wide), True, one)
                 for module in modules
             ]
-            for pairs, wide, one in zip(asked, stretch, demands, strict=True)
+            for pairs, wide, one in zip(makeable, stretch, demands, strict=True)
         ]
         # Longest list of intervals.
         most = max(span.shape[2] for row in spans for span in row)
@@ -203,7 +203,9 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
         # Tried in rising order, so that the smallest of equally near modules wins.
         for place in sorted(_list_choices(problem, row, modules), key=modules.__getitem__):
             module = modules[place] * stretch[row]
-            fits = np.isfinite(_find_intervals(asked[row], low / module, high / module, False, demands[row])[..., 0, 0])
+            fits = np.isfinite(
+                _find_intervals(makeable[row], low / module, high / module, False, demands[row])[..., 0, 0]
+            )
             every[row, place] = fits
             apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
             # Strictly nearer: among equals the earlier, smaller module stays.

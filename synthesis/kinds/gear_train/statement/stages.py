@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -63,7 +63,7 @@ class RequestedStage(StageType):
         return 1 if self.type == "internal" else -1
 
     @property
-    def likeness(self) -> tuple[Any, ...]:
+    def likeness(self) -> tuple[object, ...]:
         """Common values of stages whose gears may change places; explicit and default values are equal."""
         ring = (self.ring or "driven") if self.type == "internal" else None
         return (

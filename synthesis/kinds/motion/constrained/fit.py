@@ -20,15 +20,17 @@ from synthesis.fit.workspace_margins import count_margins
 from synthesis.kinds.motion.constrained.clearance_residuals import compute_min_margins
 from synthesis.kinds.motion.constrained.residuals import (
     ASSEMBLY,
-    BOXES,
     COSINE,
     DIRECTION,
+    FIXED_BOXES,
     FIXED_RESIDUAL_COUNT,
     GIVEN_COORDINATES,
     HOME_PIVOTS,
     HOME_WEIGHT_INDEX,
     LINE,
-    LINKS,
+    MAX_LINK,
+    MIN_LINK,
+    MOVING_BOXES,
     PIVOT_COORDINATE_COUNT,
     RATIO,
     SHORTEST,
@@ -92,7 +94,7 @@ def make_constrained_fit(
     pivots = np.ascontiguousarray(start.pivots).view(np.float64)
     setting = _pack_setting(problem, task, start, room)
     # The term near the start keeps fits of different starts different.
-    setting[HOME_PIVOTS : HOME_PIVOTS + PIVOT_COORDINATE_COUNT], setting[HOME_WEIGHT_INDEX] = pivots, HOME_WEIGHT
+    setting[HOME_PIVOTS], setting[HOME_WEIGHT_INDEX] = pivots, HOME_WEIGHT
     return ConstrainedFit(np.concatenate([pivots, start.deviations[rows[:, 3:] > 0.0]]), setting)
 
 
@@ -199,18 +201,18 @@ def _pack_setting(problem: MotionProblem, task: MotionTask, start: Start, room: 
     # Without a limit a small angle keeps the fit away from toggles.
     setting[COSINE] = math.cos(math.radians(max(constraints.min_transmission_angle or 0.0, MIN_ANGLE)))
     lengths = constraints.link_length
-    setting[LINKS] = 0.0 if lengths is None else lengths.min / task.size
-    setting[LINKS + 1] = math.inf if lengths is None or lengths.max is None else lengths.max / task.size
+    setting[MIN_LINK] = 0.0 if lengths is None else lengths.min / task.size
+    setting[MAX_LINK] = math.inf if lengths is None or lengths.max is None else lengths.max / task.size
     setting[RATIO] = math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio
-    for k, region in enumerate((constraints.fixed_pivot_region, constraints.moving_pivot_region)):
-        # The same region applies to both pivots of a pair.
-        setting[BOXES + 8 * k : BOXES + 8 * (k + 1)] = np.tile(make_box(task, region), 2)
-    setting[GIVEN_COORDINATES : GIVEN_COORDINATES + PIVOT_COORDINATE_COUNT] = list_given_coordinates(task, problem)
-    setting[LINE : LINE + 3] = math.nan
+    # The same region applies to both pivots of a pair.
+    setting[FIXED_BOXES] = np.tile(make_box(task, constraints.fixed_pivot_region), 2)
+    setting[MOVING_BOXES] = np.tile(make_box(task, constraints.moving_pivot_region), 2)
+    setting[GIVEN_COORDINATES] = list_given_coordinates(task, problem)
+    setting[LINE] = math.nan
     if problem.ground_line is not None:
         normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
         offset = -problem.ground_line.offset(task.origin) / task.size
-        setting[LINE : LINE + 3] = normal.real, normal.imag, offset
+        setting[LINE] = normal.real, normal.imag, offset
     return np.concatenate([setting, room])
 
 

@@ -36,25 +36,69 @@ from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.workspace_margins import count_margins
 from synthesis.kinds.motion.constrained.clearance_residuals import append_room_rows
+from synthesis.numerics.array_layout import ArrayLayout
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
-(
-    DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN_COORDINATES, LINE, HOME_PIVOTS, HOME_WEIGHT_INDEX,
-    STEPS,
-) = (0, 1, 2, 3, 4, 6, 7, 23, 31, 34, 42, 43)  # fmt: skip
-"""Indices into a setting: direction of the input (±1); sign of the assembly; required shortest link (0 to 3 for d, a,
-b, c; −1 if open); cosine of the minimum transmission angle; minimum and maximum length (0, infinite if open); maximum
-link ratio (infinite if open); boxes (x min, x max, y min, y max) of O2, O4, A and B; given coordinates of the same (NaN
-if open); ground line (unit normal and offset; NaN if open); pivots to stay near, and the weight of that term; from
-there on the input's rotation from each pose to the next, known to half a turn. The workspace parameters
-(:mod:`synthesis.fit.workspace`), if any, come last."""
+PIVOT_COORDINATE_COUNT = 8
+"""Number of unknowns that are coordinates of pivots."""
+
+BOX_SIZE = 4
+"""Number of sides of a box: x min, x max, y min, y max."""
+
+SETTING = ArrayLayout(
+    direction=1,
+    assembly=1,
+    shortest=1,
+    cosine=1,
+    min_link=1,
+    max_link=1,
+    ratio=1,
+    fixed_boxes=2 * BOX_SIZE,
+    moving_boxes=2 * BOX_SIZE,
+    given_coordinates=PIVOT_COORDINATE_COUNT,
+    line=3,
+    home_pivots=PIVOT_COORDINATE_COUNT,
+    home_weight=1,
+)
+"""Setting of a fit. The input's rotations from each pose to the next follow, known to half a turn. The workspace
+parameters (:mod:`synthesis.fit.workspace`), if any, come last."""
+
+DIRECTION, ASSEMBLY = SETTING.index("direction"), SETTING.index("assembly")
+"""Direction of the input, ±1; sign of the assembly."""
+
+SHORTEST = SETTING.index("shortest")
+"""Required shortest link, 0 to 3 for d, a, b, c; −1 if open."""
+
+COSINE = SETTING.index("cosine")
+"""Cosine of the minimum transmission angle."""
+
+MIN_LINK, MAX_LINK = SETTING.index("min_link"), SETTING.index("max_link")
+"""Minimum and maximum length of a link; 0 and infinite if open."""
+
+RATIO = SETTING.index("ratio")
+"""Maximum link ratio; infinite if open."""
+
+FIXED_BOXES, MOVING_BOXES = SETTING.slice("fixed_boxes"), SETTING.slice("moving_boxes")
+"""Boxes of O2 and O4, and of A and B."""
+
+BOXES = SETTING.slice("fixed_boxes", "moving_boxes")
+"""Boxes of O2, O4, A and B."""
+
+GIVEN_COORDINATES = SETTING.slice("given_coordinates")
+"""Given coordinates of O2, O4, A and B; NaN if open."""
+
+LINE = SETTING.slice("line")
+"""Ground line: unit normal and offset; NaN if open."""
+
+HOME_PIVOTS, HOME_WEIGHT_INDEX = SETTING.slice("home_pivots"), SETTING.index("home_weight")
+"""Pivots to stay near, and the weight of that term."""
+
+STEPS = SETTING.size
+"""Index of the input's first rotation from one pose to the next."""
 
 FIXED_RESIDUAL_COUNT = 14 + 8
 """Number of residuals other than those of deviations."""
-
-PIVOT_COORDINATE_COUNT = 8
-"""Number of unknowns that are coordinates of pivots."""
 
 LIMIT_TIGHTENING = 1e-7
 """Amount by which limits are tightened relative to their verification, in shares of a tolerance, transmission cosines
@@ -118,13 +162,14 @@ def _evaluate_equations(x: Real, a: Complex, b: Complex, lengths: Real, setting:
         # Constant link lengths, the equations of the problem.
         margins[m], margins[m + 1] = abs(a[k + 1] - o2) - lengths[1], abs(b[k + 1] - o4) - lengths[3]
         m += 2
+    given, line = setting[GIVEN_COORDINATES], setting[LINE]
     for k in range(PIVOT_COORDINATE_COUNT):
-        if not math.isnan(setting[GIVEN_COORDINATES + k]):
-            margins[m + k] = x[k] - setting[GIVEN_COORDINATES + k]
+        if not math.isnan(given[k]):
+            margins[m + k] = x[k] - given[k]
     m += PIVOT_COORDINATE_COUNT
-    if not math.isnan(setting[LINE]):
+    if not math.isnan(line[0]):
         for k in range(2):
-            margins[m + k] = setting[LINE] * x[2 * k] + setting[LINE + 1] * x[2 * k + 1] - setting[LINE + 2]
+            margins[m + k] = line[0] * x[2 * k] + line[1] * x[2 * k + 1] - line[2]
 
 
 @njit(cache=True, nogil=True)
@@ -139,8 +184,9 @@ def _write_soft_residuals(
         residuals[rows + 2 * k + 1] = LENGTH_WEIGHT * lengths[k]
     residuals[rows + 8], residuals[rows + 9] = ARM_WEIGHT * abs(arm_a), ARM_WEIGHT * abs(arm_b)
     rows += 10
+    home = setting[HOME_PIVOTS]
     for k in range(PIVOT_COORDINATE_COUNT):
-        residuals[rows + k] = setting[HOME_WEIGHT_INDEX] * (x[k] - setting[HOME_PIVOTS + k])
+        residuals[rows + k] = setting[HOME_WEIGHT_INDEX] * (x[k] - home[k])
     return rows + PIVOT_COORDINATE_COUNT
 
 
@@ -209,11 +255,11 @@ def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, mar
     lengths = np.array([abs(o4 - o2), abs(a[0] - o2), abs(b[0] - a[0]), abs(b[0] - o4)])
     if not lengths.min() > MIN_LENGTH:
         return -1
+    boxes = setting[BOXES]
     for pivot in range(4):
-        z = (o2, o4, a[0], b[0])[pivot]
-        box = BOXES + 4 * pivot
-        margins[m], margins[m + 1] = z.real - setting[box], setting[box + 1] - z.real
-        margins[m + 2], margins[m + 3] = z.imag - setting[box + 2], setting[box + 3] - z.imag
+        z, box = (o2, o4, a[0], b[0])[pivot], boxes[BOX_SIZE * pivot :]
+        margins[m], margins[m + 1] = z.real - box[0], box[1] - z.real
+        margins[m + 2], margins[m + 3] = z.imag - box[2], box[3] - z.imag
         m += 4
     m = _evaluate_length_margins(lengths, setting, margins, m)
     # Margins of order follow those of transmission (8), Grashof (3) and circuit (n).
@@ -243,10 +289,10 @@ def _evaluate_margins(x: Real, points: Real, setting: Real, residuals: Real, mar
 def _evaluate_length_margins(lengths: Real, setting: Real, margins: Real, m: int) -> int:
     """Write the logarithmic margins of link lengths and link ratios from index m on; return the next index."""
     for i in range(4):
-        if setting[LINKS] > 0.0:
-            margins[m] = math.log(lengths[i] / setting[LINKS]) - LIMIT_TIGHTENING
-        if setting[LINKS + 1] < np.inf:
-            margins[m + 1] = math.log(setting[LINKS + 1] / lengths[i]) - LIMIT_TIGHTENING
+        if setting[MIN_LINK] > 0.0:
+            margins[m] = math.log(lengths[i] / setting[MIN_LINK]) - LIMIT_TIGHTENING
+        if setting[MAX_LINK] < np.inf:
+            margins[m + 1] = math.log(setting[MAX_LINK] / lengths[i]) - LIMIT_TIGHTENING
         m += 2
     for i in range(4):
         for k in range(4):

@@ -11,7 +11,6 @@ import cmath
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -128,7 +127,7 @@ def _move_choices(side: DyadChoices, first: complex, moved: tuple[complex, compl
 
     ``moved`` is the new P and the body's rotation e^{iα} from the target position; ``turned`` is α in degrees.
     """
-    update: dict[str, Any] = {}
+    update: dict[str, object] = {}
     pivot, vector = to_complete_point(side.moving_pivot), side.coupler_vector
     if pivot is not None:
         update["moving_pivot"] = to_point(moved[0] + moved[1] * (pivot - first))

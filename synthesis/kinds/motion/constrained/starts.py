@@ -100,13 +100,13 @@ def list_starts(problem: MotionProblem, task: MotionTask, tolerances: Real, coun
     outputs = inputs if alike else _sample_side(task, poses, sides[1], areas[1], rng)
     softened = relax_constraints(problem.constraints)
     limit = problem.constraints.min_transmission_angle or 0.0
-    wanted = make_screening_constraints(softened, task, ANGLE_RELAXATION * limit, problem.rank_by)
+    constraints = make_screening_constraints(softened, task, ANGLE_RELAXATION * limit, problem.rank_by)
     chosen: list[tuple[Real, Complex, NDArray[np.int64]]] = []
     for k, (one, other) in enumerate(zip(inputs, outputs, strict=True)):
         if not len(one.dyads.fixed) or not len(other.dyads.fixed):
             continue
         set_of = _make_task(poses[k])
-        score = screen(set_of, one.dyads, other.dyads, wanted).score * np.outer(one.weight, other.weight)
+        score = screen(set_of, one.dyads, other.dyads, constraints).score * np.outer(one.weight, other.weight)
         # A fixed share per set keeps the variety of poses among the starts.
         best = np.argpartition(-score, min(POOL_SIZE // SET_COUNT, score.size - 1), axis=None)[: POOL_SIZE // SET_COUNT]
         best = best[score.ravel()[best] > 0.0]

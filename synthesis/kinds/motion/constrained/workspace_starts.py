@@ -86,14 +86,14 @@ def list_workspace_starts(problem: MotionProblem, task: MotionTask, rows: Real) 
         return [], np.empty(0)
     least = problem.constraints.min_transmission_angle or 0.0
     # Relaxed, because the fit can improve a start that narrowly violates a limit.
-    wanted = make_screening_constraints(
+    constraints = make_screening_constraints(
         relax_constraints(problem.constraints), task, ANGLE_RELAXATION * least, problem.rank_by
     )
-    met = screen(task, one.dyads, other.dyads, wanted).score
+    met = screen(task, one.dyads, other.dyads, constraints).score
     score = met * np.outer(one.weight, other.weight)
     if np.count_nonzero(met) < POOL_SIZE:
         # Poses that lie close together may come into order by deviations: include such pairs at a lower weight.
-        any_order = screen(task, one.dyads, other.dyads, wanted._replace(in_order=False)).score
+        any_order = screen(task, one.dyads, other.dyads, constraints._replace(in_order=False)).score
         score = np.where(met > 0.0, score, ORDER_DEFECT_WEIGHT * any_order * np.outer(one.weight, other.weight))
     best = np.argpartition(-score, min(POOL_SIZE, score.size - 1), axis=None)[:POOL_SIZE]
     best = best[score.ravel()[best] > 0.0]

@@ -87,8 +87,8 @@ class _Stage(NamedTuple):
 
 def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
     """Add a driver dyad to each fourbar of a result and verify the sixbars."""
-    wanted = problem.driver
-    assert wanted is not None
+    request = problem.driver
+    assert request is not None
     sifting = CandidateLog[LinkageDesign](problem)
     sifting.rejected.update(result.search.rejected)
     # Every accepted fourbar counts as outranked until a driver dyad is added to it.
@@ -99,7 +99,7 @@ def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pro
         if len(usable) == problem.max_designs:
             break
         tried += 1
-        best = _add_best_driver(problem, design, wanted)
+        best = _add_best_driver(problem, design, request)
         # A linkage that can be driven from either side appears twice in the designs, but was accepted once.
         sifting.rejected[OUTRANKED_REASON] -= sifting.rejected[OUTRANKED_REASON] > 0
         # A failed driver is a rejection of this stage; the fourbar itself was good.
@@ -140,7 +140,7 @@ def remove_driver(problem: MotionProblem) -> MotionProblem:
 
 
 def _add_best_driver(
-    problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad, *, limited: bool = True
+    problem: MotionProblem, design: LinkageDesign, request: DriverDyad, *, limited: bool = True
 ) -> LinkageDesign | None:
     """Return a fourbar with the best driver that passes, or else the best one that fails; None if no driver fits.
 
@@ -152,14 +152,14 @@ def _add_best_driver(
     least = math.sin(math.radians(problem.constraints.min_transmission_angle or 0.0)) if limited else 0.0
     for link in ("input", "output", "coupler"):
         # The coupler is the last resort: it is tried only on request or if no ground link can be driven well.
-        if wanted.link not in ("any", link) or (
-            link == "coupler" and _is_good_enough(problem, best) and wanted.link == "any"
+        if request.link not in ("any", link) or (
+            link == "coupler" and _is_good_enough(problem, best) and request.link == "any"
         ):
             continue
         if link == "coupler":
-            drivers = find_coupler_drivers(design, design.mechanism, wanted, MAX_COUPLER_DRIVERS, least)
+            drivers = find_coupler_drivers(design, design.mechanism, request, MAX_COUPLER_DRIVERS, least)
         else:
-            drivers = sorted(_list_drivers(design, design.mechanism, link, wanted, least), key=lambda c: -c[0])
+            drivers = sorted(_list_drivers(design, design.mechanism, link, request, least), key=lambda c: -c[0])
         # Only a few of the best are verified, because a verification costs far more than the whole grid.
         kept = [mechanism for _, mechanism in drivers if not limited or _is_within_lengths(problem, mechanism)]
         for mechanism in kept[:MAX_VERIFIED]:
@@ -169,18 +169,19 @@ def _add_best_driver(
             if found is not None and found.verification.passed:
                 break
     if best is None and limited and problem.include_failed:
-        return _add_best_driver(problem, design, wanted, limited=False)
+        return _add_best_driver(problem, design, request, limited=False)
     return best
 
 
 def _is_within_lengths(problem: MotionProblem, mechanism: SixbarMechanism) -> bool:
     """Return whether a sixbar's links satisfy the limits of lengths and link ratio, apart from rounding."""
     lengths, constraints = list_link_lengths(mechanism), problem.constraints
-    stated, ratio = constraints.link_length, constraints.max_link_ratio
+    length_limits, ratio = constraints.link_length, constraints.max_link_ratio
     # Without the client's own limit the transmission angle must at least be usable.
     short, long = min(lengths), max(lengths)
-    within = stated is None or (
-        short >= (1.0 - LENGTH_TOLERANCE) * stated.min and long <= (1.0 + LENGTH_TOLERANCE) * (stated.max or long)
+    within = length_limits is None or (
+        short >= (1.0 - LENGTH_TOLERANCE) * length_limits.min
+        and long <= (1.0 + LENGTH_TOLERANCE) * (length_limits.max or long)
     )
     return within and (ratio is None or long <= (1.0 + LENGTH_TOLERANCE) * ratio * short)
 
@@ -196,7 +197,7 @@ def _get_rank(design: LinkageDesign) -> tuple[bool, float]:
 
 
 def _list_drivers(
-    design: LinkageDesign, mechanism: FourbarMechanism, link: str, wanted: DriverDyad, least: float
+    design: LinkageDesign, mechanism: FourbarMechanism, link: str, request: DriverDyad, least: float
 ) -> list[tuple[float, SixbarMechanism]]:
     """List the drivers of one link with their scores, the best of each shape; ``least`` as for :func:`_list_stages`."""
     fourbar = build_driven_fourbar(mechanism)
@@ -230,8 +231,8 @@ def _list_drivers(
             np.concatenate([around, np.broadcast_to(joints, (*around.shape[:2], len(joints)))], axis=-1)
         )
         score = stage.score[n] / (1.0 + ((whole / alone - 1.0) / SIZE_SCALE) ** 2)
-        if wanted.pivot_region is not None:
-            score = np.where(wanted.pivot_region.mark_contained(o6), score, 0.0)
+        if request.pivot_region is not None:
+            score = np.where(request.pivot_region.mark_contained(o6), score, 0.0)
         k, m = np.unravel_index(int(np.argmax(score)), score.shape)
         if score[k, m] > 0.0:
             place = complex(c[k, m, 0])

@@ -24,7 +24,7 @@ in two if a pivot is given (the first step places that pivot, the second solves 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,10 @@ RIDGE_SHARE = 1e-14
 MAX_PIVOT_DISTANCE = 1e5
 """Maximum distance of a pivot, in task sizes. Farther pivots are treated as sliders: their residuals could not be kept
 below 1e-9."""
+
+
+Values = TypeVar("Values", Complex | None, Real | None)
+"""One condition of a batch of dyads, if given."""
 
 
 class Line(NamedTuple):
@@ -175,7 +179,7 @@ def refine_dyads(task: MotionTask, dyads: Dyads) -> Dyads:
 def _select_conditions(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadConditions:
     """Return the conditions of selected dyads of the batch."""
 
-    def select(value: Any) -> Any:
+    def select(value: Values) -> Values:
         return value if value is None or np.ndim(value) == 0 else value[rows]
 
     return DyadConditions(

@@ -136,7 +136,7 @@ def make_screening_constraints(
     )
 
 
-def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: ScreeningConstraints) -> Screening:
+def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, constraints: ScreeningConstraints) -> Screening:
     """Screen every pair of an input and an output dyad.
 
     Parameters
@@ -145,7 +145,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: ScreeningCon
         n positions.
     inputs, outputs : Dyads
         Shapes (i,) and (o,), task coordinates.
-    wanted : ScreeningConstraints
+    constraints : ScreeningConstraints
         The constraints on a pair.
     """
     shape = (len(inputs.fixed), len(outputs.fixed))
@@ -157,7 +157,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: ScreeningCon
         np.ascontiguousarray(task.images(outputs.moving)),
         np.ascontiguousarray(outputs.fixed),
         task.points,
-        wanted,
+        constraints,
         verdict,
         score,
     )
@@ -171,7 +171,7 @@ def _screen(
     b_images: NDArray[np.complex128],
     o4s: NDArray[np.complex128],
     points: NDArray[np.complex128],
-    wanted: ScreeningConstraints,
+    constraints: ScreeningConstraints,
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
 ) -> None:
@@ -182,12 +182,25 @@ def _screen(
     for i in range(len(o2s)):
         o2 = o2s[i]
         in_order = _compute_turns(a_images[i], o2, turned)
-        if wanted.in_order and not (in_order[0] or in_order[1]):
+        if constraints.in_order and not (in_order[0] or in_order[1]):
             continue  # an order defect with every output
         # Sorted rotations serve the test of branches for all outputs.
         around = np.sort(turned[0])
         _screen_row(
-            i, a_images, o2, inputs[i], b_images, o4s, outputs, turned, around, in_order, points, wanted, verdict, score
+            i,
+            a_images,
+            o2,
+            inputs[i],
+            b_images,
+            o4s,
+            outputs,
+            turned,
+            around,
+            in_order,
+            points,
+            constraints,
+            verdict,
+            score,
         )
 
 
@@ -256,7 +269,7 @@ def _screen_row(
     around: NDArray[np.float64],
     in_order: tuple[bool, bool],
     points: NDArray[np.complex128],
-    wanted: ScreeningConstraints,
+    constraints: ScreeningConstraints,
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
 ) -> None:
@@ -274,28 +287,28 @@ def _screen_row(
         if shortest <= MIN_LINK_SHARE * longest:
             verdict[i, j] = DEGENERATE
             continue
-        if shortest < wanted.shortest or longest > wanted.longest:
+        if shortest < constraints.shortest or longest > constraints.longest:
             verdict[i, j] = LINK_LENGTH
             continue
-        if longest > wanted.link_ratio * shortest:
+        if longest > constraints.link_ratio * shortest:
             verdict[i, j] = LINK_RATIO
             continue
         # Strict: a change point (equality) has an undetermined motion.
         grashof = 2.0 * (shortest + longest) < a + b + c + d
-        if wanted.grashof != ANY_GRASHOF:
+        if constraints.grashof != ANY_GRASHOF:
             crank = grashof and shortest == a
             good = (
-                (wanted.grashof == CRANK_ROCKER and crank)
-                or (wanted.grashof == DOUBLE_CRANK and grashof and shortest == d)
-                or (wanted.grashof == DOUBLE_ROCKER and grashof and shortest == b)
-                or (wanted.grashof == NON_GRASHOF and not grashof)
+                (constraints.grashof == CRANK_ROCKER and crank)
+                or (constraints.grashof == DOUBLE_CRANK and grashof and shortest == d)
+                or (constraints.grashof == DOUBLE_ROCKER and grashof and shortest == b)
+                or (constraints.grashof == NON_GRASHOF and not grashof)
             )
             if not good:
                 verdict[i, j] = GRASHOF
                 continue
         # Cheapest tests come first: most pairs are rejected before the targets are compared.
         input_turns_through = grashof and shortest in (a, d)
-        if wanted.full_rotation and not input_turns_through:
+        if constraints.full_rotation and not input_turns_through:
             verdict[i, j] = FULL_ROTATION
             continue
 
@@ -335,24 +348,24 @@ def _screen_row(
                 # No ordered range works: tell an order defect from a branch defect by allowing any order.
                 out_of_order, around_all = _find_unordered_range(a, b, c, d, math.atan2(first.imag, first.real), around)
                 if out_of_order < TOGGLE_COSINE:
-                    if wanted.in_order:
+                    if constraints.in_order:
                         verdict[i, j] = ORDER_DEFECT
                         continue
                     best, swept = out_of_order, around_all
         if best >= TOGGLE_COSINE:
-            if wanted.same_branch:
+            if constraints.same_branch:
                 verdict[i, j] = BRANCH_DEFECT
                 continue
             best = 1.0
-        if best > wanted.least_transmission_cosine:
+        if best > constraints.least_transmission_cosine:
             verdict[i, j] = TRANSMISSION_ANGLE
             continue
         # A motion through a toggle still gets a rank, below all others.
         sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE_SINE)
         verdict[i, j] = SOUND
-        if wanted.rank_by == BY_TRANSMISSION:
+        if constraints.rank_by == BY_TRANSMISSION:
             score[i, j] = sine
-        elif wanted.rank_by == BY_SIZE:
+        elif constraints.rank_by == BY_SIZE:
             # Smaller is better, and scores are positive.
             score[i, j] = 1.0 / _measure_diagonal(a_images, i, o2, b_images, j, o4, points)
         else:

@@ -145,8 +145,8 @@ def try_sliders(problem: MotionProblem, result: MotionResult, progress: Progress
     # An incomplete search with candidates might still have a fourbar.
     if result.search.candidates and not result.search.complete:
         return result
-    for kind, asked in _propose_slider_problems(problem):
-        answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+    for kind, slider_problem in _propose_slider_problems(problem):
+        answer = solve_sliders(slider_problem, kind, lambda fraction, message: progress(1.0, message))
         if answer.designs:
             text = f"{result.summary} With a slider instead of a pin: {answer.summary}"
             return answer.model_copy(update={"summary": text})
@@ -164,8 +164,8 @@ def merge_sliders(
     parts: list[MotionResult] = []
     kinds = {slider.kind for slider in known}
     met: dict[str, bool] = {}
-    for kind, asked in _propose_slider_problems(problem):
-        answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+    for kind, slider_problem in _propose_slider_problems(problem):
+        answer = solve_sliders(slider_problem, kind, lambda fraction, message: progress(1.0, message))
         met[kind] = met.get(kind, False) or answer.search.candidates > 0
         # A search without candidates found no dyads; it adds nothing to the counts.
         if answer.search.candidates:
@@ -198,10 +198,10 @@ def _propose_slider_problems(problem: MotionProblem) -> Iterator[tuple[Literal["
             # A ground line needs two fixed pivots; a slider has none.
             if choices.dyad != "any" or problem.ground_line is not None:
                 continue
-            asked = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
+            slider_problem = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
             # Choices for pins may exclude a slider.
-            if not asked.find_contradictions():
-                yield kind, asked
+            if not slider_problem.find_contradictions():
+                yield kind, slider_problem
 
 
 def _report_missing_dyads(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResult:
@@ -301,23 +301,31 @@ def _screen(
             sines = np.sqrt(np.maximum(1.0 - (offset / nearest) ** 2, 0.0))
         clear = nearest > offset
         lengths = np.stack(np.broadcast_arrays(crank, ground, np.maximum(offset, ground * 0.2)))
-    return _score_pairs(problem, task, lengths, ahead, moved, clear, sines, least, links, kind, sliders)
+    return _score_pairs(problem, task, lengths, _PairMotion(ahead, moved, clear, sines), least, links, kind, sliders)
+
+
+class _PairMotion(NamedTuple):
+    """Motions of all pairs: positions ahead along the slide at the targets, whether the input turns in one direction,
+    whether the pair stays clear of toggles, and the sine of the minimum transmission angle."""
+
+    ahead: Real
+    moved: NDArray[np.bool_]
+    clear: NDArray[np.bool_]
+    sines: Real
 
 
 def _score_pairs(
     problem: MotionProblem,
     task: MotionTask,
     lengths: Real,
-    ahead: Real,
-    moved: NDArray[np.bool_],
-    clear: NDArray[np.bool_],
-    sines: Real,
+    motion: _PairMotion,
     least: float,
     links: Dyads,
     kind: str,
     sliders: Sliders,
 ) -> _ScreeningResult:
     shape = lengths.shape[1:]
+    ahead, moved, clear, sines = motion
     limits, ratio = (
         problem.constraints.link_length,
         lengths.max(axis=0) / np.maximum(lengths.min(axis=0), MIN_LENGTH),

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, STEPHENSON_2, A, B, J, compute_signed_sine
+from synthesis.kinds.motion.sixbar.dyad_assembly import O4, Q1, Q2, STEPHENSON_2, A, B, J, compute_signed_sine
 from synthesis.kinds.motion.sixbar.quality import Poses, evaluate_sixbar
 from synthesis.kinds.motion.sixbar.residuals import (
     COSINE,
@@ -26,11 +26,12 @@ from synthesis.kinds.motion.sixbar.residuals import (
     FIRST_Y,
     INPUT_DIRECTION,
     JOINT_COORDINATE_COUNT,
-    POSE_SIZE,
+    POSE_ANGLE,
+    POSE_X,
+    POSE_Y,
     RATIO,
     REACH,
     SECOND_SIDE,
-    SETTING_SIZE,
     TOPOLOGY,
     count_max_rows,
     evaluate_residuals,
@@ -86,7 +87,7 @@ class Pool(NamedTuple):
     x : float, shape (POOL_SIZE, unknowns)
     costs : float, shape (POOL_SIZE,)
         Sums of squares; infinite for an empty place.
-    settings : float, shape (POOL_SIZE, SETTING_SIZE)
+    settings : float, shape (POOL_SIZE, SETTING.size)
     starts : int, shape (POOL_SIZE,)
         Index of each linkage's first pose.
     """
@@ -117,7 +118,7 @@ class ConvergedSixbars(NamedTuple):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _copy_row(from_row: Real, row: Real) -> None:
+def copy_row(from_row: Real, row: Real) -> None:
     """Copy a row element by element; a slice assignment would take the compiler seconds."""
     for k in range(row.size):
         row[k] = from_row[k]
@@ -237,7 +238,7 @@ def descend(
                 trial[k] = x[k] + share * step[k]
             lower = _evaluate_cost(trial, points, setting, room)
         if lower < cost:
-            _copy_row(trial, x)
+            copy_row(trial, x)
             cost = lower
             # A cut step says less about the model, so the damping falls more slowly.
             damping = max(damping * (FULL_STEP_FACTOR if share == 1.0 else CUT_STEP_FACTOR), MIN_DAMPING)
@@ -251,12 +252,11 @@ def descend(
 @njit(cache=True, nogil=True, error_model="numpy")
 def select_first_pose(poses: Poses, start: int, setting: Real, points: Real) -> None:
     """Select a first pose, and write the later positions with their angles relative to it."""
-    setting[FIRST_X], setting[FIRST_Y] = poses.first[start, 0], poses.first[start, 1]
+    setting[FIRST_X], setting[FIRST_Y] = poses.first[start, POSE_X], poses.first[start, POSE_Y]
     for k in range(len(poses.later)):
-        for i in range(POSE_SIZE):
-            points[k, i] = poses.later[k, i]
+        copy_row(poses.later[k], points[k])
         # Angles relative to the first pose, which each linkage chooses for itself.
-        points[k, 2] -= poses.first[start, 2]
+        points[k, POSE_ANGLE] -= poses.first[start, POSE_ANGLE]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -268,12 +268,12 @@ def _sample_linkage(
     centre = complex(setting[FIRST_X], setting[FIRST_Y])
     intervals = x.size - JOINT_COORDINATE_COUNT
     for k in range(intervals):
-        centre += complex(points[k, 0], points[k, 1])
+        centre += complex(points[k, POSE_X], points[k, POSE_Y])
     centre /= intervals + 1
-    side = np.empty(SETTING_SIZE)
+    side = np.empty(setting.size)
     # Most random linkages do not close over the whole rotation, hence the many tries.
     for _ in range(MAX_TRIES):
-        _copy_row(setting, side)
+        copy_row(setting, side)
         # Logarithmically uniform: small and large linkages are sampled alike.
         spread = MIN_SPREAD * (MAX_SPREAD / MIN_SPREAD) ** rng.random()
         for j in range(JOINT_COORDINATE_COUNT):
@@ -298,7 +298,7 @@ def _sample_linkage(
             found += 1
             if cost < best:
                 best = cost
-                _copy_row(trial, x)
+                copy_row(trial, x)
                 setting[FIRST_SIDE], setting[SECOND_SIDE] = side[FIRST_SIDE], side[SECOND_SIDE]
             if found == PICK_COUNT:
                 break
@@ -329,12 +329,12 @@ def _optimize_value(
     counts: NDArray[np.int64],
 ) -> float:
     """Improve a linkage's value by hops that return to the positions; return the new value."""
-    trial, other, aims = np.empty(x.size), np.empty(7, np.complex128), np.empty(SETTING_SIZE)
+    trial, other, aims = np.empty(x.size), np.empty(7, np.complex128), np.empty(setting.size)
     spread = IMPROVEMENT_HOP
     angle = math.acos(setting[COSINE])
     reach, ratio = setting[REACH], setting[RATIO]
     for n in range(IMPROVEMENT_COUNT):
-        _copy_row(setting, aims)
+        copy_row(setting, aims)
         # Every third attempt keeps the aims, so that the input's rotation and the body's path may improve instead.
         if n % 3:
             aims[COSINE] = math.cos(min(angle + 0.1, 1.4))
@@ -345,7 +345,7 @@ def _optimize_value(
             better = evaluate_sixbar(trial, points, aims, poses, other)
             if better > value:
                 value = better
-                _copy_row(trial, x)
+                copy_row(trial, x)
                 for k in range(len(other)):
                     joints[k] = other[k]
                 setting[FIRST_SIDE], setting[SECOND_SIDE] = aims[FIRST_SIDE], aims[SECOND_SIDE]
@@ -363,12 +363,12 @@ def _insert_in_pool(pool: Pool, n: int, x: Real, cost: float, setting: Real, sta
     # Insertion sort from the end: the pool is small and nearly sorted.
     """Replace the n-th linkage of the pool and move the new one up to its rank by cost."""
     while n > 0 and pool.costs[n - 1] > cost:
-        _copy_row(pool.x[n - 1], pool.x[n])
-        _copy_row(pool.settings[n - 1], pool.settings[n])
+        copy_row(pool.x[n - 1], pool.x[n])
+        copy_row(pool.settings[n - 1], pool.settings[n])
         pool.costs[n], pool.starts[n] = pool.costs[n - 1], pool.starts[n - 1]
         n -= 1
-    _copy_row(x, pool.x[n])
-    _copy_row(setting, pool.settings[n])
+    copy_row(x, pool.x[n])
+    copy_row(setting, pool.settings[n])
     pool.costs[n], pool.starts[n] = cost, start
 
 
@@ -401,13 +401,13 @@ def run_descents(
         Number of descents.
     makes : int, shape (n,)
         Topology numbers to sample from, repeated by weight.
-    plain : float, shape (SETTINGS,)
+    plain : float, shape (SETTING.size,)
         The limits; entries that belong to a linkage are filled in.
     poses, pool, arrived
         Target poses; pool, updated in place; output.
     """
     unknowns = JOINT_COORDINATE_COUNT + len(poses.later)
-    x, setting, points = np.empty(unknowns), np.empty(SETTING_SIZE), np.empty((len(poses.later), POSE_SIZE))
+    x, setting, points = np.empty(unknowns), np.empty(plain.size), np.empty(poses.later.shape)
     most = count_max_rows(len(poses.later) + 1)
     room = DescentBuffers(
         np.empty(most), np.empty(most), np.empty((most, unknowns)), np.empty((most, most)), np.empty(most)
@@ -421,7 +421,7 @@ def run_descents(
         # The pool must be full before hops may start from it.
         if rng.random() < FRESH_SHARE or not pool.costs[POOL_SIZE - 1] < np.inf:
             start = int(rng.random() * len(poses.first))
-            _copy_row(plain, setting)
+            copy_row(plain, setting)
             setting[TOPOLOGY] = makes[int(rng.random() * len(makes))]
             setting[INPUT_DIRECTION] = 1.0 if rng.random() < 0.5 else -1.0
             select_first_pose(poses, start, setting, points)
@@ -430,7 +430,7 @@ def run_descents(
             # Squaring the random number prefers the better members.
             parent = int(POOL_SIZE * rng.random() ** 2)
             start = int(pool.starts[parent])
-            _copy_row(pool.settings[parent], setting)
+            copy_row(pool.settings[parent], setting)
             select_first_pose(poses, start, setting, points)
             spread = MIN_HOP * (MAX_HOP / MIN_HOP) ** rng.random()
             # A hop may open the linkage; another random step often closes it.

@@ -35,10 +35,10 @@ class ChainSearch:
     """
 
     def __init__(
-        self, problem: MotionProblem, task: MotionTask, target: TargetPoses, wanted: NDArray[np.bool_], limits: Real
+        self, problem: MotionProblem, task: MotionTask, target: TargetPoses, requested: NDArray[np.bool_], limits: Real
     ) -> None:
         self.problem, self.task, self.target = problem, task, target
-        self.wanted, self.limits = wanted, limits
+        self.requested, self.limits = requested, limits
         self.chain = Chain() if problem.chain is None else problem.chain
         self.weighed = 0
 
@@ -47,7 +47,7 @@ class ChainSearch:
         poses = sample_poses(self.task, self.target, rng, CHAINS_PER_ROUND)
         chains, free = sample_chains(self.task, poses, self.chain, self.problem.constraints.fixed_pivot_region, rng)
         given = kernels.ChainConstraints(
-            poses.points, poses.turns, poses.demanded, compute_needed_motion(self.task), self.wanted, self.limits
+            poses.points, poses.turns, poses.demanded, compute_needed_motion(self.task), self.requested, self.limits
         )
         joints, makes, owners = (
             np.empty((MAX_KEPT, 7), np.complex128),

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from kinematics.arrays import Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar import basin_hopping as walk
-from synthesis.kinds.motion.sixbar import chain_kernels as kernels
+from synthesis.kinds.motion.sixbar import candidate_value
 from synthesis.kinds.motion.sixbar import least_squares as fit
 from synthesis.kinds.motion.sixbar import residuals as rows
+from synthesis.kinds.motion.sixbar.chain_kernels import POSITION_COUNT
+from synthesis.kinds.motion.sixbar.dyad_assembly import STEPHENSON_2
 from synthesis.kinds.motion.sixbar.quality import Poses
 from synthesis.kinds.motion.sixbar.random_chains import compute_needed_motion
 from synthesis.kinds.motion.sixbar.relative_dyads import MAX_DYADS, compute_relative_poses, solve_relative_dyads
@@ -77,21 +79,21 @@ class BranchSearch:
     """
 
     def __init__(
-        self, problem: MotionProblem, task: MotionTask, target: TargetPoses, wanted: NDArray[np.bool_], limits: Real
+        self, problem: MotionProblem, task: MotionTask, target: TargetPoses, requested: NDArray[np.bool_], limits: Real
     ) -> None:
-        exactly = len(target.exact_mask) == kernels.POSITION_COUNT and bool(target.exact_mask.all())
+        exactly = len(target.exact_mask) == POSITION_COUNT and bool(target.exact_mask.all())
         # A family of cranks does not exclude a Stephenson II, and cannot be listed.
         exactly = exactly and not _has_many_cranks(task)
         self.cranks = _find_cranks(task) if exactly else np.empty((0, 2), np.complex128)
         # Only requested topologies are sampled.
-        drawn = np.where(wanted, SAMPLING_WEIGHTS, 0)
+        drawn = np.where(requested, SAMPLING_WEIGHTS, 0)
         # A Stephenson II contains a crank between body and ground: without a crank through five poses none exists.
         if exactly and not len(self.cranks):
-            drawn[kernels.STEPHENSON_2] = 0
-        self.makes = np.repeat(np.arange(len(wanted)), drawn)
+            drawn[STEPHENSON_2] = 0
+        self.makes = np.repeat(np.arange(len(requested)), drawn)
         self.first, self.later = _sample_poses(problem, task, target, np.random.default_rng(problem.seed))
-        self.held: NDArray[np.bool_] = np.all(target.exact_mask, axis=1)
-        self.each = math.ceil(DESCENTS_PER_ROUND * min(1.0, MAX_EXACT_POSITIONS / len(self.held)))
+        self.exact_mask: NDArray[np.bool_] = np.all(target.exact_mask, axis=1)
+        self.each = math.ceil(DESCENTS_PER_ROUND * min(1.0, MAX_EXACT_POSITIONS / len(self.exact_mask)))
         self.needed, self.limits = compute_needed_motion(task), limits
         # Two pools: with the limits, and without the default ones; a round uses one of them.
         self.settings = (
@@ -128,7 +130,7 @@ class BranchSearch:
         poses = Poses(self.first, self.later, self.needed, self.limits, self.cranks)
         for pool in self.pools:
             ends = SixbarCandidates.allocate(len(pool.costs))
-            n = int(fit.fit_pool(poses, self.held, pool, self.bare, ends))
+            n = int(fit.fit_pool(poses, self.exact_mask, pool, self.bare, ends))
             found = found.merge(ends.select_rows(np.arange(n)))
             # The pool's members have been used; the next descents refill it.
             pool.costs[:] = np.inf
@@ -153,7 +155,7 @@ def _find_cranks(task: MotionTask) -> NDArray[np.complex128]:
 
     A Stephenson II contains one of them.
     """
-    still, upright = np.zeros(kernels.POSITION_COUNT, np.complex128), np.ones(kernels.POSITION_COUNT, np.complex128)
+    still, upright = np.zeros(POSITION_COUNT, np.complex128), np.ones(POSITION_COUNT, np.complex128)
     shift, spin = np.empty_like(still), np.empty_like(still)
     fixed, moving = np.empty(MAX_DYADS, np.complex128), np.empty(MAX_DYADS, np.complex128)
     compute_relative_poses(still, upright, task.points, task.turns, shift, spin)
@@ -181,30 +183,36 @@ def _sample_poses(
     if problem.is_least_squares:
         # Exact positions weigh more in a fit, so that they are nearly met before the final projection.
         weights[np.all(target.exact_mask, axis=1)] *= fit.EXACT_WEIGHT
-    return first / unit, np.concatenate([places, off, weights], axis=1)[1:]
+    poses = np.empty((len(places), rows.POSE.size))
+    poses[:, rows.POSE.slice("x", "angle")] = places
+    poses[:, rows.POSE_TOLERANCES] = off
+    poses[:, rows.POSE.slice("point_weight", "angle_weight")] = weights
+    return first / unit, poses[1:]
 
 
 def _make_aims(problem: MotionProblem, limits: Real, aside: LimitMargins, *, relaxed: bool) -> Real:
     """Pack the limits that descents aim at into a setting, from :data:`residuals.COSINE` on."""
-    aims = np.zeros(rows.SETTING_SIZE)
-    angle = math.asin(limits[kernels.MIN_SINE]) + aside.angle
-    reach, ratio = limits[[kernels.MAX_REACH, kernels.MAX_RATIO]]
+    aims = np.zeros(rows.SETTING.size)
+    angle = math.asin(limits[candidate_value.MIN_SINE]) + aside.angle
+    reach, ratio = limits[[candidate_value.MAX_REACH, candidate_value.MAX_RATIO]]
     if relaxed:
         # Only defaults are relaxed; limits of the client stay.
         angle = RELAXED_ANGLE if problem.constraints.min_transmission_angle is None else angle
         ratio *= RELAXED_SIZE_FACTOR if problem.constraints.max_link_ratio is None else 1.0
         reach *= RELAXED_SIZE_FACTOR
     aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), aside.size * reach, aside.size * ratio
-    aims[rows.SHORTEST] = max(aside.shortest * kernels.MIN_LINK_LENGTH, limits[kernels.MIN_LENGTH] / aside.size)
-    aims[rows.LONGEST] = aside.size * limits[kernels.MAX_LENGTH]
+    aims[rows.SHORTEST] = max(
+        aside.shortest * candidate_value.MIN_LINK_LENGTH, limits[candidate_value.MIN_LENGTH] / aside.size
+    )
+    aims[rows.LONGEST] = aside.size * limits[candidate_value.MAX_LENGTH]
     # The boxes have the same order in both arrays.
-    aims[rows.FIXED_BOX : rows.TARGET_X] = limits[kernels.FIXED_BOX :]
+    aims[rows.BOXES] = limits[candidate_value.BOXES]
     return aims
 
 
 def _make_empty_pool(later: int) -> walk.Pool:
     unknowns = rows.JOINT_COORDINATE_COUNT + later
-    settings = np.zeros((walk.POOL_SIZE, rows.SETTING_SIZE))
+    settings = np.zeros((walk.POOL_SIZE, rows.SETTING.size))
     return walk.Pool(
         np.zeros((walk.POOL_SIZE, unknowns)),
         np.full(walk.POOL_SIZE, np.inf),

@@ -17,7 +17,7 @@ from __future__ import annotations
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.triad_slant import differentiate_leg_slant, find_min_slant
-from synthesis.kinds.motion.sixbar.chain_kernels import O2, O4, Q1, Q2, A, B, J
+from synthesis.kinds.motion.sixbar.dyad_assembly import O2, O4, Q1, Q2, A, B, J
 
 FLIPPED_COSINE = 2.0
 """Cosine returned if the sine's sign differs from that in the first position: the linkage has passed a toggle."""

@@ -14,24 +14,37 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Real
 from kinematics.compiling import njit
-from synthesis.kinds.motion.sixbar.basin_hopping import CONVERGED_COST, DescentBuffers, Pool, descend, select_first_pose
+from synthesis.kinds.motion.sixbar.basin_hopping import (
+    CONVERGED_COST,
+    DescentBuffers,
+    Pool,
+    copy_row,
+    descend,
+    select_first_pose,
+)
 from synthesis.kinds.motion.sixbar.quality import Poses, evaluate_sixbar
 from synthesis.kinds.motion.sixbar.residuals import (
+    ANGLE_WEIGHT_INDEX,
+    BOXES,
     COSINE,
     FIRST_X,
     FIRST_Y,
-    FIXED_BOX,
     FREE_POSE_SIZE,
     INPUT_DIRECTION,
     JOINT_COORDINATE_COUNT,
     LONGEST,
-    POSE_SIZE,
+    POINT_WEIGHT_INDEX,
+    POSE_ANGLE,
+    POSE_TOLERANCES,
+    POSE_X,
+    POSE_Y,
     RATIO,
     REACH,
-    SETTING_SIZE,
+    SCALAR_LIMITS,
     SHORTEST,
     TARGET_X,
     TARGET_Y,
+    TOPOLOGY,
     compute_dimensions,
     count_max_rows,
     drive_linkage,
@@ -77,25 +90,28 @@ def _compute_rms_error(x: Real, points: Real, setting: Real, free: int) -> float
     for k in range(len(points)):
         angle += math.exp(x[JOINT_COORDINATE_COUNT + k])
         drive_linkage(z, lengths, inverses, setting, setting[INPUT_DIRECTION] * angle, at, turns)
-        back = turns[3] * complex(math.cos(points[k, 2]), -math.sin(points[k, 2]))
-        total += (at[5].real - points[k, 0]) ** 2 + (at[5].imag - points[k, 1]) ** 2
+        back = turns[3] * complex(math.cos(points[k, POSE_ANGLE]), -math.sin(points[k, POSE_ANGLE]))
+        total += (at[5].real - points[k, POSE_X]) ** 2 + (at[5].imag - points[k, POSE_Y]) ** 2
         total += (math.atan2(back.imag, back.real) + stands) ** 2
     return math.sqrt(total / (len(points) + 1))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _project_on_exact(x: Real, points: Real, setting: Real, held: NDArray[np.bool_], room: DescentBuffers) -> bool:
+def _project_on_exact(
+    x: Real, points: Real, setting: Real, exact_mask: NDArray[np.bool_], room: DescentBuffers
+) -> bool:
     """Move a linkage onto the exact positions, ignoring its limits; return whether that succeeds."""
     only, free = points.copy(), setting.copy()
     for k in range(len(points)):
         # Full weight on exact positions; the others get a tolerance that disables them.
-        only[k, 6], only[k, 7] = 1.0, 1.0
-        if not held[k + 1]:
-            only[k, 3:6] = IGNORED_TOLERANCE
+        only[k, POINT_WEIGHT_INDEX], only[k, ANGLE_WEIGHT_INDEX] = 1.0, 1.0
+        if not exact_mask[k + 1]:
+            only[k, POSE_TOLERANCES] = IGNORED_TOLERANCE
     # Without limits, because the projection is a tiny step; the evaluation checks them again.
     free[COSINE], free[REACH], free[RATIO], free[SHORTEST], free[LONGEST] = 1.0, np.inf, np.inf, 0.0, np.inf
-    for n in range(FIXED_BOX, TARGET_X):
-        free[n] = np.inf if (n - FIXED_BOX) % 2 else -np.inf
+    sides = free[BOXES]
+    for n in range(sides.size):
+        sides[n] = np.inf if n % 2 else -np.inf
     counts = np.zeros(3, np.int64)
     return bool(descend(x, only, free, room, counts, MAX_COST_RATIO) < CONVERGED_COST)
 
@@ -120,8 +136,7 @@ def _retry_at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, pose
     if setting[COSINE] > bare[COSINE]:
         return  # a relaxed start has wider aims than the limits already
     further, limits, joints = x.copy(), setting.copy(), np.empty(7, np.complex128)
-    for k in range(COSINE, FIRST_X):
-        limits[k] = bare[k]
+    copy_row(bare[SCALAR_LIMITS], limits[SCALAR_LIMITS])
     met = _minimize_cost(further, points, limits, room) < EXACT_FIT_COST
     # Accept only feasible linkages: the retry had no margins for the motion between samples.
     if met and evaluate_sixbar(further, points, limits, poses, joints) >= 1.0:
@@ -130,18 +145,18 @@ def _retry_at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, pose
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found: SixbarCandidates) -> int:
+def fit_pool(poses: Poses, exact_mask: NDArray[np.bool_], pool: Pool, bare: Real, found: SixbarCandidates) -> int:
     """Fit all linkages of a pool until convergence.
 
     Parameters
     ----------
     poses : Poses
         Target poses.
-    held : bool, shape (n,)
+    exact_mask : bool, shape (n,)
         Mask of the exact positions.
     pool : Pool
         Starting points.
-    bare : float, shape (SETTING_SIZE,)
+    bare : float, shape (SETTING.size,)
         The limits without the margins of the starts' aims.
     found : SixbarCandidates
         Output.
@@ -153,9 +168,9 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
     """
     later = len(poses.later)
     # A fitted first pose adds three unknowns.
-    unknowns = JOINT_COORDINATE_COUNT + later + (0 if held[0] else FREE_POSE_SIZE)
-    free = -1 if held[0] else JOINT_COORDINATE_COUNT + later
-    x, setting, points = np.empty(unknowns), np.empty(SETTING_SIZE), np.empty((later, POSE_SIZE))
+    unknowns = JOINT_COORDINATE_COUNT + later + (0 if exact_mask[0] else FREE_POSE_SIZE)
+    free = -1 if exact_mask[0] else JOINT_COORDINATE_COUNT + later
+    x, setting, points = np.empty(unknowns), np.empty(bare.size), np.empty(poses.later.shape)
     most = count_max_rows(later + 1)
     room = DescentBuffers(
         np.empty(most), np.empty(most), np.empty((most, unknowns)), np.empty((most, most)), np.empty(most)
@@ -166,12 +181,12 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
         # An empty place of the pool.
         if not pool.costs[row] < np.inf:
             continue
-        for k in range(SETTING_SIZE):
-            setting[k] = pool.settings[row, k]
+        copy_row(pool.settings[row], setting)
         select_first_pose(poses, pool.starts[row], setting, points)
         setting[TARGET_X], setting[TARGET_Y] = setting[FIRST_X], setting[FIRST_Y]
         for k in range(later):
-            points[k, 6] = points[k, 7] = FIT_WEIGHT * (EXACT_WEIGHT if held[k + 1] else 1.0)
+            weight = FIT_WEIGHT * (EXACT_WEIGHT if exact_mask[k + 1] else 1.0)
+            points[k, POINT_WEIGHT_INDEX] = points[k, ANGLE_WEIGHT_INDEX] = weight
         for k in range(JOINT_COORDINATE_COUNT + later):
             x[k] = pool.x[row, k]
         if free > 0:
@@ -179,13 +194,13 @@ def fit_pool(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, foun
         if _minimize_cost(x, points, setting, room) > EXACT_FIT_COST:
             _retry_at_bare_limits(x, points, setting, bare, poses, room)
         # A weight alone leaves a small error at exact positions; these steps remove it.
-        if held.any() and not _project_on_exact(x, points, setting, held, room):
+        if exact_mask.any() and not _project_on_exact(x, points, setting, exact_mask, room):
             continue
         if free > 0:
             setting[FIRST_X], setting[FIRST_Y] = x[free], x[free + 1]
         value = evaluate_sixbar(x, points, setting, poses, joints)
         error = _compute_rms_error(x, points, setting, free)
-        found.makes[n] = int(setting[0])
+        found.makes[n] = int(setting[TOPOLOGY])
         for k in range(7):
             found.joints[n, k] = joints[k]
         found.bodies[n] = complex(setting[FIRST_X], setting[FIRST_Y])

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.kinds.motion.sixbar.chain_kernels import (
+from synthesis.kinds.motion.sixbar.candidate_value import (
     FIXED_BOX,
     JOINT_BOX,
     MAX_LENGTH,
@@ -20,14 +20,12 @@ from synthesis.kinds.motion.sixbar.chain_kernels import (
     MIN_LINK_LENGTH,
     MIN_SINE,
     MOVING_BOX,
-    Q2,
     STEP_COUNT,
-    STEPHENSON_2,
-    J,
     evaluate_candidate,
     measure_angle,
     measure_outside,
 )
+from synthesis.kinds.motion.sixbar.dyad_assembly import Q2, STEPHENSON_2, J
 from synthesis.kinds.motion.sixbar.residuals import (
     FIRST_X,
     FIRST_Y,
@@ -50,12 +48,12 @@ class Poses(NamedTuple):
     ----------
     first : float, shape (n, 3)
         P and the body's angle in the first position; each linkage uses one row.
-    later : float, shape (k, 8)
-        Later positions in the form of :data:`residuals.POSE_SIZE`, with angles from the first target position.
+    later : float, shape (k, POSE.size)
+        Later positions in the form of :data:`residuals.POSE`, with angles from the first target position.
     needed : float, shape (2,)
         Path length and rotation that the body needs at least.
-    limits : float, shape (19,)
-        See :data:`synthesis.kinds.motion.sixbar.chain_kernels.MIN_SINE`.
+    limits : float
+        See :data:`synthesis.kinds.motion.sixbar.candidate_value.LIMITS`.
     cranks : complex, shape (m, 2)
         For five exact positions: the pins, in the first one, of all cranks between body and ground.
     """
@@ -125,7 +123,7 @@ def _evaluate_stephenson_2(
             return -1.0
         flattest = min(flattest, math.sqrt((1.0 - cosine) * (1.0 + cosine)))
         for k in range(6):
-            beyond = max(beyond, measure_outside(at[k], limits[JOINT_BOX:]))
+            beyond = max(beyond, measure_outside(at[k], limits[JOINT_BOX]))
         input_turn += measure_angle(input_before, turns[0])
         bent += abs(measure_angle(body_before, turns[3]))
         travelled += abs(at[5] - place_before)
@@ -137,7 +135,7 @@ def _evaluate_stephenson_2(
     over = max(reach / limits[MAX_REACH], ratio / limits[MAX_RATIO])
     over = max(over, limits[MIN_LENGTH] / shortest, longest / limits[MAX_LENGTH])
     for k in range(7):
-        box = limits[FIXED_BOX:MOVING_BOX] if k in (Q2, J) else limits[MOVING_BOX:JOINT_BOX]
+        box = limits[FIXED_BOX] if k in (Q2, J) else limits[MOVING_BOX]
         beyond = max(beyond, measure_outside(joints[k], box))
     over = max(over, 1.0) + beyond
     # Below 1 the value grows towards feasibility, which guides the search.

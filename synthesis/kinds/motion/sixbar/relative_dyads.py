@@ -46,7 +46,7 @@ NEWTON_STEPS, CONVERGENCE_TOLERANCE = 8, 1e-13
 DUPLICATE_TOLERANCE = 1e-7
 """Distance of two dyads, relative to their size, below which they are duplicates."""
 
-JIT_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+JIT_OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
 @njit(**JIT_OPTIONS)

@@ -1,6 +1,6 @@
 """Residuals of a sixbar that carries a body through poses on one branch, in order.
 
-The unknowns x are the seven joints in the first position (:data:`chain_kernels.O2` …) and, from each position to the
+The unknowns x are the seven joints in the first position (:data:`dyad_assembly.O2` …) and, from each position to the
 next, the logarithm of the input's rotation, so that the input never reverses. Three optional unknowns are the body's
 first pose, which is then fitted like the later ones. The linkage is driven by closing its dyads, each in its initial
 assembly. A linkage that does not close at one of :data:`SAMPLE_COUNT` inputs in between is rejected, so a descent never
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.kinds.motion.sixbar.chain_kernels import (
+from synthesis.kinds.motion.sixbar.dyad_assembly import (
     COUPLER,
     GROUND,
     INPUT,
@@ -48,6 +48,7 @@ from synthesis.kinds.motion.sixbar.chain_kernels import (
     place_on_link,
 )
 from synthesis.kinds.motion.sixbar.inversion import transform_rates, transform_to_ground
+from synthesis.numerics.array_layout import ArrayLayout
 
 JOINT_COORDINATE_COUNT = 14
 """Number of unknowns that are coordinates of joints."""
@@ -55,18 +56,69 @@ JOINT_COORDINATE_COUNT = 14
 SAMPLE_COUNT = 24
 """Number of drive steps from the first position to the last, in addition to the positions themselves."""
 
-TOPOLOGY, INPUT_DIRECTION, FIRST_SIDE, SECOND_SIDE, COSINE, REACH, SHORTEST, LONGEST, RATIO, FIRST_X, FIRST_Y = range(
-    11
+SETTING = ArrayLayout(
+    topology=1,
+    input_direction=1,
+    first_side=1,
+    second_side=1,
+    cosine=1,
+    reach=1,
+    shortest=1,
+    longest=1,
+    ratio=1,
+    first_x=1,
+    first_y=1,
+    fixed_box=4,
+    moving_box=4,
+    joint_box=4,
+    target_x=1,
+    target_y=1,
 )
-FIXED_BOX, MOVING_BOX, JOINT_BOX, TARGET_X, TARGET_Y, SETTING_SIZE = 11, 15, 19, 23, 24, 25
-"""Indices into a setting: topology number; direction of the input (±1); assemblies of both dyads (±1); cosine of the
-minimum transmission angle; size limits as for :data:`chain_kernels.MAX_REACH`; P in the first position; boxes
-(x min, x max, y min, y max) as there; target of P in the first position, if that is fitted; number of entries. Task
-coordinates."""
+"""Setting of a sixbar and its limits, in task coordinates."""
 
-POSE_SIZE = 8
-"""Length of a row of ``points``, one later position: x, y, the body's rotation from the first, their three tolerances,
+TOPOLOGY = SETTING.index("topology")
+"""Topology number."""
+
+INPUT_DIRECTION = SETTING.index("input_direction")
+"""Direction of the input, ±1."""
+
+FIRST_SIDE, SECOND_SIDE = SETTING.index("first_side"), SETTING.index("second_side")
+"""Assemblies of both dyads, ±1."""
+
+COSINE = SETTING.index("cosine")
+"""Cosine of the minimum transmission angle."""
+
+REACH, RATIO = SETTING.index("reach"), SETTING.index("ratio")
+"""Maximum distance of two joints of a link, and maximum link ratio."""
+
+SHORTEST, LONGEST = SETTING.index("shortest"), SETTING.index("longest")
+"""Minimum and maximum link length."""
+
+SCALAR_LIMITS = SETTING.slice("cosine", "ratio")
+"""All limits other than boxes."""
+
+FIRST_X, FIRST_Y = SETTING.index("first_x"), SETTING.index("first_y")
+"""P in the first position."""
+
+FIXED_BOX, MOVING_BOX = SETTING.slice("fixed_box"), SETTING.slice("moving_box")
+"""Boxes (x min, x max, y min, y max) of the fixed pivots, and of the moving ones in the first position."""
+
+JOINT_BOX = SETTING.slice("joint_box")
+"""Box of all joints during the motion."""
+
+BOXES = SETTING.slice("fixed_box", "joint_box")
+"""All boxes."""
+
+TARGET_X, TARGET_Y = SETTING.index("target_x"), SETTING.index("target_y")
+"""Target of P in the first position, if that is fitted."""
+
+POSE = ArrayLayout(x=1, y=1, angle=1, tolerances=3, point_weight=1, angle_weight=1)
+"""Row of ``points``, one later position: P, the body's rotation from the first position, the tolerances of these three,
 and the weights of P's distance and of the angle."""
+
+POSE_X, POSE_Y, POSE_ANGLE = POSE.index("x"), POSE.index("y"), POSE.index("angle")
+POSE_TOLERANCES = POSE.slice("tolerances")
+POINT_WEIGHT_INDEX, ANGLE_WEIGHT_INDEX = POSE.index("point_weight"), POSE.index("angle_weight")
 
 FREE_POSE_SIZE = 3
 """Number of unknowns of a fitted first pose: P, and the body's rotation from its target angle."""
@@ -147,7 +199,7 @@ def assemble_linkage(
     z, lengths, inverses : complex, shape (7,); float and complex, shape (4,)
         Joints in the first position, and their :func:`compute_dimensions`.
     setting : float
-        See :data:`TOPOLOGY`.
+        See :data:`SETTING`.
     angle : float
         Radians.
     at : complex, shape (6,)
@@ -311,7 +363,7 @@ def _append_size_rows(z: Complex, setting: Real, residuals: Real, jacobian: Real
         fixed = (
             i in (Q2, J) if make == STEPHENSON_2 else i in (O2, O4) or (i == Q2 and TOPOLOGY_LINKS[make, 1] == GROUND)
         )
-        box = setting[FIXED_BOX:MOVING_BOX] if fixed else setting[MOVING_BOX:JOINT_BOX]
+        box = setting[FIXED_BOX] if fixed else setting[MOVING_BOX]
         for axis in range(2):
             off = _measure_excess(z[i].imag if axis else z[i].real, box[2 * axis], box[2 * axis + 1])
             if off != 0.0:
@@ -360,9 +412,10 @@ def _append_first_pose_rows(
 ) -> int:
     """Write the rows of a fitted first pose, with weights as of ``pose``; return their number."""
     m, derived = 0, len(jacobian) > 0
+    off = setting[FIRST_X] - setting[TARGET_X], setting[FIRST_Y] - setting[TARGET_Y], stands
     for axis in range(FREE_POSE_SIZE):
-        weight = pose[7 if axis == 2 else 6]
-        residuals[m] = weight * (stands if axis == 2 else setting[FIRST_X + axis] - setting[TARGET_X + axis])
+        weight = pose[ANGLE_WEIGHT_INDEX if axis == 2 else POINT_WEIGHT_INDEX]
+        residuals[m] = weight * off[axis]
         if derived:
             jacobian[m] = 0.0
             jacobian[m, free + axis] = weight
@@ -388,7 +441,7 @@ def _append_bound_rows(
     everywhere: bool, free: int, residuals: Real, jacobian: Real, m: int,
 ) -> int:  # fmt: skip
     """Append the rows of violated transmission angles and boxes at one input; return the number of rows."""
-    derived, room = len(jacobian) > 0, setting[JOINT_BOX : JOINT_BOX + 4]
+    derived, room = len(jacobian) > 0, setting[JOINT_BOX]
     for dyad in range(2):
         over = abs(cosines[dyad]) - setting[COSINE]
         if over > 0.0:
@@ -416,18 +469,19 @@ def _append_pose_rows(
 ) -> int:  # fmt: skip
     """Append the rows of the deviations from a target pose; return the number of rows."""
     derived = len(jacobian) > 0
-    back = turn * complex(math.cos(pose[2]), -math.sin(pose[2]))
+    back = turn * complex(math.cos(pose[POSE_ANGLE]), -math.sin(pose[POSE_ANGLE]))
+    tolerances = pose[POSE_TOLERANCES]
     # x, y and the angle of the body.
     for axis in range(3):
-        weight, at_axis = pose[6], rates.real
-        off = place.real - pose[0]
+        weight, at_axis = pose[POINT_WEIGHT_INDEX], rates.real
+        off = place.real - pose[POSE_X]
         if axis == 1:
-            off, at_axis = place.imag - pose[1], rates.imag
+            off, at_axis = place.imag - pose[POSE_Y], rates.imag
         elif axis == 2:
-            off, at_axis, weight = math.atan2(back.imag, back.real) + stands, turning, pose[7]
+            off, at_axis, weight = math.atan2(back.imag, back.real) + stands, turning, pose[ANGLE_WEIGHT_INDEX]
         # Within its tolerance a coordinate has no residual, so it leaves a freedom to the others.
-        if pose[3 + axis] == 0.0 or abs(off) > pose[3 + axis]:
-            residuals[m] = weight * _subtract_tolerance(off, pose[3 + axis])
+        if tolerances[axis] == 0.0 or abs(off) > tolerances[axis]:
+            residuals[m] = weight * _subtract_tolerance(off, tolerances[axis])
             if derived:
                 _write_row(at_axis, weight, by_turn, jacobian[m])
                 if free > 0 and axis < 2:
@@ -456,10 +510,10 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
     ----------
     x : float, shape (14 + positions − 1,) or three more
         The unknowns.
-    points : float, shape (positions − 1, 8)
-        See :data:`POSE_SIZE`.
+    points : float, shape (positions − 1, POSE.size)
+        See :data:`POSE`.
     setting : float
-        See :data:`TOPOLOGY`; P of a fitted first pose is written into it.
+        See :data:`SETTING`; P of a fitted first pose is written into it.
     residuals, jacobian : float, shape (most_rows, ), (most_rows, unknowns)
         Output; a Jacobian without rows is not computed.
 
@@ -488,7 +542,7 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
     rates = np.empty((6, JOINT_COORDINATE_COUNT + 1), np.complex128)
     turning, through = np.empty(JOINT_COORDINATE_COUNT + 1), np.empty(JOINT_COORDINATE_COUNT + 1)
     bending, cosines = np.empty((2, JOINT_COORDINATE_COUNT + 1)), np.empty(2)
-    room = setting[JOINT_BOX : JOINT_BOX + 4]
+    room = setting[JOINT_BOX]
     # Without a box no sample needs rates unless a cosine is active; that saves most of the work.
     everywhere = math.isinf(room[1] - room[0]) and math.isinf(room[3] - room[2])
     m, angle, inverted = 0, 0.0, int(setting[TOPOLOGY]) == STEPHENSON_2

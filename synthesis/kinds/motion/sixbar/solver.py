@@ -17,6 +17,7 @@ import numpy as np
 from kinematics.arrays import Real
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.sixbar import candidate_value
 from synthesis.kinds.motion.sixbar.chain_rounds import ChainSearch
 from synthesis.kinds.motion.sixbar.descent_rounds import BranchSearch
 from synthesis.kinds.motion.sixbar.least_squares import compute_fit_value
@@ -95,10 +96,10 @@ class SixbarSearch:
     def __init__(self, problem: MotionProblem, types: tuple[Sixbar, ...]) -> None:
         self.problem, self.types = problem, types
         self.task, self.target = make_motion_task(problem), make_target_poses(problem)
-        wanted = np.array([make.type in types for make in TOPOLOGIES])
+        requested = np.array([make.type in types for make in TOPOLOGIES])
         limits = _pack_limits(problem, self.task)
-        self.chains = ChainSearch(problem, self.task, self.target, wanted, limits)
-        self.branches = BranchSearch(problem, self.task, self.target, wanted, limits)
+        self.chains = ChainSearch(problem, self.task, self.target, requested, limits)
+        self.branches = BranchSearch(problem, self.task, self.target, requested, limits)
 
     @property
     def candidate_count(self) -> int:
@@ -114,9 +115,11 @@ class SixbarSearch:
     def run(self, progress: Progress) -> SixbarCandidates:
         """Run rounds until there are enough distinct feasible sixbars, or the budget is used up."""
         rng = np.random.default_rng(self.problem.seed)
-        stated = self.problem.constraints
-        regions = stated.fixed_pivot_region, stated.moving_pivot_region, self.problem.space
-        mixed = stated.full_rotation or stated.grashof != "any" or any(region is not None for region in regions)
+        constraints = self.problem.constraints
+        regions = constraints.fixed_pivot_region, constraints.moving_pivot_region, self.problem.space
+        mixed = (
+            constraints.full_rotation or constraints.grashof != "any" or any(region is not None for region in regions)
+        )
         # A Stephenson II contains no chain, so chains cannot help it.
         mixed = mixed and len(self.problem.positions) <= MAX_EXACT_POSITIONS and self.types != (UNCLASSED_SIXBAR,)
         found = SixbarCandidates.make_empty()
@@ -146,7 +149,7 @@ class SixbarSearch:
         """Run rounds until enough feasible sixbars meet all positions or the budget is used; smallest errors first."""
         rng = np.random.default_rng(self.problem.seed)
         found = SixbarCandidates.make_empty()
-        least, since, n, told = math.inf, 0, 0, 0.0
+        least, since, n, share = math.inf, 0, 0, 0.0
         until, enough, nearly = FIT_BUDGET, compute_fit_value(TARGET_ERROR), compute_fit_value(PROMISING_ERROR)
         while n * BRANCH_ROUND_SHARE < until:
             relaxed = n * BRANCH_ROUND_SHARE >= RELAXATION_START * FIT_BUDGET and not bool(np.any(found.values >= 1.0))
@@ -169,8 +172,8 @@ class SixbarSearch:
                 if np.any(found.values >= nearly):
                     until = EXTENDED_FIT_BUDGET
             # The budget may be extended, but reported progress must not decrease.
-            told = max(told, min(n * BRANCH_ROUND_SHARE / until, 1.0))
-            progress(told, f"{self.candidate_count} sixbars examined")
+            share = max(share, min(n * BRANCH_ROUND_SHARE / until, 1.0))
+            progress(share, f"{self.candidate_count} sixbars examined")
         return found
 
     def _select_distinct(self, found: SixbarCandidates) -> SixbarCandidates:
@@ -220,26 +223,31 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
 
 
 def _pack_limits(problem: MotionProblem, task: MotionTask) -> Real:
-    """Pack the limits of a problem for the kernel (:data:`chain_kernels.MIN_SINE`)."""
-    stated = problem.constraints
+    """Pack the limits of a problem for the kernel (:data:`candidate_value.LIMITS`)."""
+    constraints = problem.constraints
     angle = (
         SOUND_TRANSMISSION_ANGLE
-        if stated.min_transmission_angle is None
+        if constraints.min_transmission_angle is None
         # Below 90°, where the cosine would demand perfection.
-        else min(stated.min_transmission_angle + ANGLE_MARGIN, 89.9)
+        else min(constraints.min_transmission_angle + ANGLE_MARGIN, 89.9)
     )
-    lengths = stated.link_length
+    lengths = constraints.link_length
     shortest = 0.0 if lengths is None else lengths.min / task.size
     longest = np.inf if lengths is None or lengths.max is None else lengths.max / task.size
-    ratio = MAX_RATIO if stated.max_link_ratio is None else stated.max_link_ratio
+    ratio = MAX_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio
     # A given chain sets the scale of the mechanism; the default limit must not exclude it.
     reach = max(MAX_REACH, CHAIN_REACH_FACTOR * problem.chain_size / task.size)
-    plain = [math.sin(math.radians(angle)), reach, ratio, shortest, longest]
-    plain += [GRASHOF_CLASSES.index(stated.grashof), stated.full_rotation]
-    boxes = [_make_box(region, task) for region in (stated.fixed_pivot_region, stated.moving_pivot_region)]
     room = None if problem.space is None else problem.space.shrink_box_for_joints()
-    boxes.append(UNBOUNDED_BOX if room is None else _scale_box(room, task))
-    return np.concatenate([plain, *boxes])
+    limits = np.empty(candidate_value.LIMITS.size)
+    limits[candidate_value.MIN_SINE] = math.sin(math.radians(angle))
+    limits[candidate_value.MAX_REACH], limits[candidate_value.MAX_RATIO] = reach, ratio
+    limits[candidate_value.MIN_LENGTH], limits[candidate_value.MAX_LENGTH] = shortest, longest
+    limits[candidate_value.GRASHOF_CLASS] = GRASHOF_CLASSES.index(constraints.grashof)
+    limits[candidate_value.FULL_TURN] = constraints.full_rotation
+    limits[candidate_value.FIXED_BOX] = _make_box(constraints.fixed_pivot_region, task)
+    limits[candidate_value.MOVING_BOX] = _make_box(constraints.moving_pivot_region, task)
+    limits[candidate_value.JOINT_BOX] = UNBOUNDED_BOX if room is None else _scale_box(room, task)
+    return limits
 
 
 def _make_box(region: Region | None, task: MotionTask) -> Real:
@@ -262,10 +270,10 @@ def _describe_result(sifting: CandidateLog[LinkageDesign], search: SixbarSearch)
         )
         if count
     ]
-    told = " and ".join(looked_at) or NO_CRANK_REMARK
+    effort = " and ".join(looked_at) or NO_CRANK_REMARK
     if not sifting.passed:
         return (
-            f"{told}; no design found satisfies all constraints.{sifting.describe_reasons()} "
+            f"{effort}; no design found satisfies all constraints.{sifting.describe_reasons()} "
             "This does not prove that none exists."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
@@ -275,4 +283,4 @@ def _describe_result(sifting: CandidateLog[LinkageDesign], search: SixbarSearch)
     if search.problem.is_least_squares:
         share = 100.0 * min(map(get_rms_error, sifting.passed))
         near = f"Best root-mean-square residual: {share:.3g} % of the task size (angles in hundredths of a radian). "
-    return f"{told}; {many}. {near}Best minimum transmission angle: {best:.1f}°."
+    return f"{effort}; {many}. {near}Best minimum transmission angle: {best:.1f}°."

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
-from synthesis.kinds.motion.sixbar import chain_kernels as kernels
+from synthesis.kinds.motion.sixbar.dyad_assembly import O2, O4, Q1, Q2, A, B, J
 from synthesis.kinds.motion.statement.mechanism_types import Sixbar
 from synthesis.model.linkage.sixbars import Links
 
@@ -21,60 +21,60 @@ class Topology(NamedTuple):
     links: Links
 
 
-_FOURBAR = {"O2": kernels.O2, "A": kernels.A, "B": kernels.B, "O4": kernels.O4}
+_FOURBAR = {"O2": O2, "A": A, "B": B, "O4": O4}
 
 TOPOLOGIES = (
     Topology(
         "watt_1",
-        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"C": Q1, "D": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "D"), "coupler": ("A", "B", "C"), "output": ("O4", "B"),
          "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
     ),
     Topology(
         "watt_1",
-        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"C": Q1, "D": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
     ),
     Topology(
         "stephenson_3",
-        _FOURBAR | {"C": kernels.Q1, "O6": kernels.Q2, "D": kernels.J},
+        _FOURBAR | {"C": Q1, "O6": Q2, "D": J},
         {"ground": ("O2", "O4", "O6"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "rocker": ("O4", "B"),
          "link_5": ("C", "D", "P"), "output": ("O6", "D")},
     ),
     Topology(
         "stephenson_1",
-        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"C": Q1, "D": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "coupler": ("A", "B"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
     ),
     Topology(
         "stephenson_1",
-        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"D": Q1, "C": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "coupler": ("A", "B"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
     ),
     Topology(
         "watt_1",
-        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"D": Q1, "C": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "D"), "coupler": ("A", "B", "C"), "output": ("O4", "B"),
          "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
     ),
     Topology(
         "watt_1",
-        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        _FOURBAR | {"D": Q1, "C": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
     ),
     Topology(
         "stephenson_2",
-        {"A": kernels.O2, "B": kernels.A, "D": kernels.B, "C": kernels.O4, "E": kernels.Q1, "O2": kernels.Q2,
-         "O4": kernels.J},
+        {"A": O2, "B": A, "D": B, "C": O4, "E": Q1, "O2": Q2,
+         "O4": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "link_3": ("A", "B"), "link_4": ("B", "D", "E", "P"),
          "link_5": ("C", "D"), "output": ("O4", "E")},
     ),
 )  # fmt: skip
-"""Topologies in the order of their kernel numbers (:data:`chain_kernels.TOPOLOGY_LINKS`)."""
+"""Topologies in the order of their kernel numbers (:data:`dyad_assembly.TOPOLOGY_LINKS`)."""
 
 
 class SixbarCandidates(NamedTuple):

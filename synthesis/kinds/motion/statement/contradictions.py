@@ -1,6 +1,6 @@
 """Contradictions of a motion problem: errors that involve more than one field.
 
-The problem has type Any here, because its model imports this module.
+The model of the problem imports this module, so that here it is imported for type checkers only.
 """
 
 from __future__ import annotations
@@ -8,12 +8,15 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices, to_complete_point
 from synthesis.kinds.motion.statement.mechanism_types import find_motion_sixbar_contradictions
 from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS
 from synthesis.model.problem import Contradiction, PartialPoint
+
+if TYPE_CHECKING:
+    from synthesis.kinds.motion.problem import MotionProblem
 
 MIN_DISPLACEMENT = 1e-12
 """Minimum distance, in length units, between positions that differ; smaller motions indicate a wrong unit."""
@@ -31,7 +34,7 @@ ON_LINE_TOLERANCE = 1e-9
 """Tolerance for a given pivot on a given line, as a share of the task's size; it covers rounding."""
 
 
-def list_contradictions(problem: Any) -> list[Contradiction]:
+def list_contradictions(problem: MotionProblem) -> list[Contradiction]:
     """Return all contradictions of a problem: equal positions, too many or conflicting choices, sides and pivots."""
     return [
         *_check_equal_positions(problem),
@@ -51,7 +54,7 @@ def list_contradictions(problem: Any) -> list[Contradiction]:
     ]
 
 
-def _check_equal_positions(problem: Any) -> list[Contradiction]:
+def _check_equal_positions(problem: MotionProblem) -> list[Contradiction]:
     size = max(max(abs(p.x), abs(p.y)) for p in problem.positions)
     moved = max(abs(p.point - q.point) for p in problem.positions for q in problem.positions)
     if 0.0 < moved < MIN_DISPLACEMENT:
@@ -70,7 +73,7 @@ def _check_equal_positions(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _check_workspace(problem: Any) -> list[Contradiction]:
+def _check_workspace(problem: MotionProblem) -> list[Contradiction]:
     if problem.space is None:
         return []
     held = [k for k, limits in enumerate(problem.limits) if limits == (0.0, 0.0, 0.0)]
@@ -80,7 +83,7 @@ def _check_workspace(problem: Any) -> list[Contradiction]:
     return faults
 
 
-def _check_exact_tolerances(problem: Any) -> list[Contradiction]:
+def _check_exact_tolerances(problem: MotionProblem) -> list[Contradiction]:
     return [
         Contradiction(f"/positions/{k}/exact", "an exact position has no tolerance; give one of the two")
         for k, position in enumerate(problem.positions)
@@ -88,7 +91,7 @@ def _check_exact_tolerances(problem: Any) -> list[Contradiction]:
     ]
 
 
-def _check_exact_count(problem: Any) -> list[Contradiction]:
+def _check_exact_count(problem: MotionProblem) -> list[Contradiction]:
     if problem.method == "exact" and len(problem.positions) > MAX_EXACT_POSITIONS and not problem.approximate:
         return [
             Contradiction(
@@ -105,7 +108,7 @@ def _check_exact_count(problem: Any) -> list[Contradiction]:
     return []
 
 
-def _check_tolerated_choices(problem: Any) -> list[Contradiction]:
+def _check_tolerated_choices(problem: MotionProblem) -> list[Contradiction]:
     """Return the choices that conflict with tolerances: link rotations, and a link angle at a tolerated first position.
 
     A position with a tolerance is met at the point of closest approach, for any rotation of the links.
@@ -123,7 +126,7 @@ def _check_tolerated_choices(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _check_fit_choices(problem: Any) -> list[Contradiction]:
+def _check_fit_choices(problem: MotionProblem) -> list[Contradiction]:
     """Return the choices that a fit does not support: it takes one pivot (or Z) of a side, and a slider's angle."""
     contradictions = []
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
@@ -153,7 +156,7 @@ def _check_partial_pivots(name: str, side: DyadChoices, where: str) -> list[Cont
     ]
 
 
-def _check_slider_choices(problem: Any) -> list[Contradiction]:
+def _check_slider_choices(problem: MotionProblem) -> list[Contradiction]:
     """Return the choices that a slider lacks: it has one pivot, no link, and one free choice less than an RR dyad."""
     contradictions = []
     sides = ("input_side", problem.input_side), ("output_side", problem.output_side)
@@ -185,7 +188,7 @@ def _check_slider_choices(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _check_slider_class(problem: Any) -> list[Contradiction]:
+def _check_slider_class(problem: MotionProblem) -> list[Contradiction]:
     if all(side.dyad not in ("PR", "RP") for side in (problem.input_side, problem.output_side)):
         return []
     faults: list[Contradiction] = problem.constraints.find_class_contradictions(
@@ -194,7 +197,7 @@ def _check_slider_class(problem: Any) -> list[Contradiction]:
     return faults
 
 
-def _check_free_choices(problem: Any) -> list[Contradiction]:
+def _check_free_choices(problem: MotionProblem) -> list[Contradiction]:
     free = 5 - len(problem.positions)
     contradictions = []
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
@@ -233,7 +236,7 @@ def _check_free_choices(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _check_pivot_regions(problem: Any) -> list[Contradiction]:
+def _check_pivot_regions(problem: MotionProblem) -> list[Contradiction]:
     contradictions = []
     for path, pivot in _list_given_pivots(problem):
         region = getattr(problem.constraints, f"{path.rsplit('/')[-1]}_region")
@@ -245,14 +248,14 @@ def _check_pivot_regions(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _list_given_pivots(problem: Any) -> Iterator[tuple[str, PartialPoint]]:
+def _list_given_pivots(problem: MotionProblem) -> Iterator[tuple[str, PartialPoint]]:
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
         for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot)):
             if pivot is not None:
                 yield f"/{name}/{field}", pivot
 
 
-def _check_ground_line(problem: Any) -> list[Contradiction]:
+def _check_ground_line(problem: MotionProblem) -> list[Contradiction]:
     line = problem.ground_line
     if line is None:
         return []
@@ -272,7 +275,7 @@ def _check_ground_line(problem: Any) -> list[Contradiction]:
     return contradictions
 
 
-def _check_coinciding_pivots(problem: Any) -> list[Contradiction]:
+def _check_coinciding_pivots(problem: MotionProblem) -> list[Contradiction]:
     contradictions = []
     for pivot in ("fixed_pivot", "moving_pivot"):
         one, other = getattr(problem.input_side, pivot), getattr(problem.output_side, pivot)

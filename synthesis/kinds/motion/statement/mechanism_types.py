@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -19,6 +19,9 @@ from synthesis.model.linkage.type_choice import (
     select_requested_types,
 )
 from synthesis.model.problem import Contradiction, PartialPoint, PositiveLength, Statement
+
+if TYPE_CHECKING:
+    from synthesis.kinds.motion.problem import MotionProblem
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 """Sixbar types in which the body's link is no link of a fourbar within the sixbar."""
@@ -55,7 +58,7 @@ class Chain(Statement):
         return max(ways)
 
 
-def find_motion_sixbar_contradictions(problem: Any) -> list[Contradiction]:
+def find_motion_sixbar_contradictions(problem: MotionProblem) -> list[Contradiction]:
     """Return contradictions between the requested types and the other fields."""
     listed: list[Contradiction] = []
     stated = problem.mechanisms
@@ -76,7 +79,7 @@ def find_motion_sixbar_contradictions(problem: Any) -> list[Contradiction]:
     return [*listed, *_check_chain_reach(problem)]
 
 
-def list_unsupported(problem: Any) -> Iterator[Contradiction]:
+def list_unsupported(problem: MotionProblem) -> Iterator[Contradiction]:
     """Yield the given fields that sixbars do not support."""
     if not problem.sixbars_possible:
         detail = f"sixbars support at most {MAX_SIXBAR_POSITIONS} positions; request fourbars for more"
@@ -93,7 +96,7 @@ def list_unsupported(problem: Any) -> Iterator[Contradiction]:
     yield from find_unsupported_by_sixbars(problem)
 
 
-def list_unsupported_stephenson_2(problem: Any) -> Iterator[Contradiction]:
+def list_unsupported_stephenson_2(problem: MotionProblem) -> Iterator[Contradiction]:
     """Yield the given fields that Stephenson II sixbars, or their search, do not support."""
     yield from refuse_class(problem.constraints)
     if problem.constraints.full_rotation:
@@ -105,7 +108,7 @@ def list_unsupported_stephenson_2(problem: Any) -> Iterator[Contradiction]:
         yield Contradiction("/chain", detail)
 
 
-def _check_types(problem: Any) -> list[Contradiction]:
+def _check_types(problem: MotionProblem) -> list[Contradiction]:
     """Return contradictions between the listed types and the dyads of the sides."""
     stated = problem.mechanisms
     if stated is None or isinstance(stated, str):
@@ -121,7 +124,7 @@ def _check_types(problem: Any) -> list[Contradiction]:
     return []
 
 
-def _check_chain_reach(problem: Any) -> list[Contradiction]:
+def _check_chain_reach(problem: MotionProblem) -> list[Contradiction]:
     """Return the contradiction of a fully given chain that cannot reach one of the positions."""
     chain = problem.chain
     if chain is None or chain.links is None or None in chain.links or problem.positions[0].tolerance is not None:

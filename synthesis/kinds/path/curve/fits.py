@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,10 @@ ANGLE_SHARES = (0.34, 0.67)
 
 MAX_CLIMBING = 6
 """Maximum number of free fits, the nearest, that climb the ladder."""
+
+
+Joint = TypeVar("Joint", complex, Complex)
+"""A joint in one configuration, or in several as an array."""
 
 
 class Fit(NamedTuple):
@@ -112,9 +116,9 @@ def list_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
     return [FourbarConfiguration(*map(complex, one)) for one in _construct_cognates(*joints)]
 
 
-def _construct_cognates(o2: Any, a: Any, b: Any, o4: Any, p: Any) -> list[tuple[Any, ...]]:
+def _construct_cognates(o2: Joint, a: Joint, b: Joint, o4: Joint, p: Joint) -> list[tuple[Joint, ...]]:
     """Return the cognates of joints in one configuration, or in several as arrays."""
-    cognates = []
+    cognates: list[tuple[Joint, ...]] = []
     for start, pin, other, far in ((o2, a, b, o4), (o4, b, a, o2)):
         cognates.append((start, pin, other, far, p))
         # With P on a pin of the coupler two cognates collapse.

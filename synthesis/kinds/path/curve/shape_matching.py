@@ -19,7 +19,7 @@ import cmath
 import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -189,11 +189,11 @@ def compare_closed(curves: Complex, target: Complex) -> Similarity:
     descriptors = fft.fft(shapes.astype(np.complex64), axis=1)
     rho, where = np.full(len(curves), -1.0), np.zeros((len(curves), 3), np.int64)
     for manner in range(4):
-        asked = target[::-1] if manner % 2 else target
+        variant = target[::-1] if manner % 2 else target
         if manner >= 2:
             # The mirrored candidate z̄ compared with t has the same |Σ| as z compared with t̄.
-            asked = asked.conj()
-        product = fft.ifft(fft.fft(asked).astype(np.complex64) * descriptors.conj(), axis=1)
+            variant = variant.conj()
+        product = fft.ifft(fft.fft(variant).astype(np.complex64) * descriptors.conj(), axis=1)
         sizes = np.abs(product)
         # The shift with the largest correlation aligns the starting points of the two curves.
         shift = sizes.argmax(axis=1)
@@ -228,25 +228,6 @@ class ComparedShapes(NamedTuple):
     swept: int
     target: Complex
     closed: bool
-
-
-def find_similar(
-    family: int,
-    target: Complex,
-    closed: bool,
-    count: int,
-    keep: int,
-    *,
-    ratio: float = 0.0,
-    longest: float = math.inf,
-    seed: int = 0,
-    progress: Callable[[float], None] | None = None,
-) -> Starts:
-    """Return the ``keep`` most similar candidates, as :func:`select_most_similar`, of those compared as by
-    :func:`compare_shapes`."""
-    return select_most_similar(
-        compare_shapes(family, target, closed, count, ratio=ratio, seed=seed, progress=progress), keep, longest
-    )
 
 
 def compare_shapes(
@@ -353,7 +334,9 @@ def _compute_dissimilarity(rho: Real) -> Real:
     return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - rho**2)))
 
 
-def _sweep_rows(drawn: RandomLinkages, family: int, rows: Any, ratio: float) -> tuple[Complex, Real, Mask, Mask]:
+def _sweep_rows(
+    drawn: RandomLinkages, family: int, rows: slice | NDArray[np.int64], ratio: float
+) -> tuple[Complex, Real, Mask, Mask]:
     """Return P and θ over the crank's range of each candidate, which of them do not jam, and which close."""
     x, sign, begin, end = drawn.x[rows], drawn.sign[rows], drawn.begin[rows], drawn.end[rows]
     # A geared fivebar repeats only after several turns of its crank.

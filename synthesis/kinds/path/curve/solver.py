@@ -47,7 +47,6 @@ from synthesis.kinds.path.curve.shape_matching import (
     ComparedShapes,
     Starts,
     compare_shapes,
-    find_similar,
     select_most_similar,
 )
 from synthesis.kinds.path.curve.stance_fit import convert_to_fit, find_stance_fits
@@ -65,7 +64,7 @@ from synthesis.kinds.path.residuals.curve_constraints import (
     pack_curve_setting,
     tighten_to_usable,
 )
-from synthesis.kinds.path.residuals.curve_descent import Descent, descend
+from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend
 from synthesis.kinds.path.residuals.families import compute_joints, list_families
 from synthesis.kinds.path.results import select_distinct_designs as designs_that_differ
 from synthesis.kinds.path.task.ranking import (
@@ -203,7 +202,7 @@ def _match_shapes(
 ) -> tuple[list[Fit], CurveSweep]:
     """Find the linkages whose curves have the target's shape and whose error is near the minimum."""
     families = list_families(problem)
-    longest = float(setting[LINKS + 1])
+    longest = float(setting[LINKS][1])
     free: list[Fit] = []
     library: list[ComparedShapes] = []
     least = math.inf
@@ -239,7 +238,7 @@ def _match_shapes(
                 chosen.append(select_most_similar(one, MAX_SUITABLE, longest, kept, evaluate_violation))
         return chosen
 
-    asked = find_constrained_fits(target, free, partial(select_suitable, setting), families, setting, MAX_OFFERED)
+    constrained = find_constrained_fits(target, free, partial(select_suitable, setting), families, setting, MAX_OFFERED)
     traded: list[Fit] = []
     if problem.rank_by != "accuracy" and not math.isfinite(setting[COSINE]):
         # Without a required transmission angle accuracy alone would lead to change points, so usable linkages compete
@@ -248,15 +247,15 @@ def _match_shapes(
             progress(0.65 + 0.1 * k / len(USABLE_ANGLES), f"fitting with a transmission angle of {degrees:g}°")
             demands = tighten_to_usable(setting, degrees, MAX_LINK_RATIO)
             traded += find_constrained_fits(
-                target, asked, partial(select_suitable, demands), families, demands, MAX_USABLE
+                target, constrained, partial(select_suitable, demands), families, demands, MAX_USABLE
             )
     sweep = CurveSweep(linkages=drawn, curves=swept, refined=followed)
     if problem.stance is not None:
         progress(0.75, "fitting the stance")
-        kept = find_stance_fits(problem, target, [*asked, *traded, *free], families, setting)
+        kept = find_stance_fits(problem, target, [*constrained, *traded, *free], families, setting)
         if kept:
             return kept, sweep
-    return _select_candidates(asked, traded), sweep
+    return _select_candidates(constrained, traded), sweep
 
 
 def _fit_at_given_pivots(problem: PathProblem, target: TargetCurve, progress: Progress) -> list[FourbarConfiguration]:
@@ -298,7 +297,7 @@ def warm_up() -> None:
     problem = PathProblem.model_validate({"kind": "path", "method": "curve_match", **stated})
     setting = pack_curve_setting(problem, 0j, 1.0)
     for family, closed in ((CRANK_ROCKER, True), (FOURBAR, False)):
-        starts = find_similar(family, circle, closed, 64, 2)
+        starts = select_most_similar(compare_shapes(family, circle, closed, 64), 2)
         fit = descend(family, starts.x, starts.sign, starts.theta, circle, iterations=2)
         descend_constrained(
             family, fit.x[0], fit.theta[0], float(starts.sign[0]), circle, np.ones(SHAPE_POINT_COUNT), setting
@@ -314,10 +313,8 @@ def _refine_free(target: TargetCurve, starts: Starts, longest: float, least: flo
     """
     if not len(starts.x):
         return [], least
-    family = starts.family
-    rough = descend(
-        family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=MAX_ROUGH_STEPS
-    )
+    family, limits = starts.family, LinkageLimits(longest=longest)
+    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, limits, iterations=MAX_ROUGH_STEPS)
     least = min(least, float(rough.cost.min()))
     best = np.argsort(rough.cost, kind="stable")[:MAX_REFINED]
     # The minimum over all families counts, so that a family without good shapes costs no refinement.
@@ -332,8 +329,8 @@ def _refine_free(target: TargetCurve, starts: Starts, longest: float, least: flo
         starts.sign[best],
         theta[:, thin],
         target.fitted[thin],
+        limits,
         weights=target.weights[thin],
-        longest=longest,
         iterations=MAX_FINE_STEPS,
     )
     signs = starts.sign[best]
@@ -361,8 +358,8 @@ def _continue_with_all_points(
         sign[rows],
         theta[rows],
         target.fitted,
+        LinkageLimits(longest=longest),
         weights=target.weights,
-        longest=longest,
         iterations=MAX_FULL_STEPS,
     )
     x[rows], theta[rows], cost[rows] = whole.x, whole.theta, whole.cost

@@ -30,6 +30,7 @@ from synthesis.kinds.path.points.fit import Candidate, PointTask
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.constraint_vector import MIN_GRASHOF, count_setting_margins
 from synthesis.kinds.path.residuals.curve_constraints import tighten_to_usable
+from synthesis.kinds.path.residuals.curve_descent import LinkageLimits
 from synthesis.kinds.path.residuals.stance import (
     COSINE,
     CYCLE,
@@ -196,9 +197,15 @@ def _fit_fourbar(fit: Fit, points: Complex, weights: Real, theta: Real, spec: Re
 
 
 def fit_simple_stance(
-    family: int, x: Real, sign: float, theta: Real, points: Complex, spec: Real, *, ratio: float, longest: float,
-    cycle: float, within: Real, cosine: float,
-) -> StanceFit | None:  # fmt: skip
+    family: int,
+    x: Real,
+    sign: float,
+    theta: Real,
+    points: Complex,
+    spec: Real,
+    linkage_limits: LinkageLimits,
+    cosine: float,
+) -> StanceFit | None:
     """Lead a slider-crank or geared fivebar to the stance; None if that fails.
 
     Parameters
@@ -207,16 +214,17 @@ def fit_simple_stance(
         As for :func:`synthesis.kinds.path.residuals.curve_descent.descend`, of one start.
     spec : float
         Stance from :func:`pack_stance`.
-    ratio, longest, cycle, within
-        As for :func:`synthesis.kinds.path.residuals.curve_descent.descend`.
+    linkage_limits : LinkageLimits
+        Gear ratio and limits.
     cosine : float
         Cosine of the minimum transmission angle of a slider-crank whose crank turns through.
     """
     setting = np.empty(SIMPLE_SIZE)
     setting[:STANCE_SIZE] = spec
-    setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, sign, ratio
-    setting[LONGEST], setting[JAM_CYCLE], setting[TRANSMISSION_COSINE] = longest, cycle, cosine
-    setting[PIVOT_LIMITS:] = within.ravel()
+    setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, sign, linkage_limits.ratio
+    setting[LONGEST], setting[JAM_CYCLE] = linkage_limits.longest, linkage_limits.cycle
+    setting[TRANSMISSION_COSINE] = cosine
+    setting[PIVOT_LIMITS] = linkage_limits.within.ravel()
     n, x, limits = len(points), np.array(x), MARGIN_COUNT + LENGTH_MARGIN_COUNT + PIVOT_MARGIN_COUNT
     state = np.zeros(n + limits)
     state[:n] = theta

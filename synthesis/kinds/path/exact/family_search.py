@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
-from synthesis.kinds.path.curve.shape_matching import find_similar
+from synthesis.kinds.path.curve.shape_matching import compare_shapes, select_most_similar
 from synthesis.kinds.path.design import FamilySearch, PathDesign, PathResult
 from synthesis.kinds.path.exact.family_in_workspace import COST_TOLERANCE, find_workspace_members
 from synthesis.kinds.path.points.workspace_starts import is_workspace_constrained
@@ -33,7 +33,7 @@ from synthesis.kinds.path.residuals.curve_constraints import (
     descend_constrained,
     measure_violation,
 )
-from synthesis.kinds.path.residuals.curve_descent import Descent, descend
+from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend
 from synthesis.kinds.path.residuals.families import compute_joints, list_families
 from synthesis.kinds.path.task.target_curve import interpolate_crank_angles, sample_smooth_steps
 from synthesis.kinds.path.verification.fourbar import verify_path
@@ -94,9 +94,9 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     given = np.array([point.point for point in problem.points])
     centre, size = complex(given.mean()), problem.task_size
     points = (given - centre) / size
-    within = compute_pivot_limits(problem, centre, size)
     limit = problem.constraints.link_length
     longest = MAX_LINK if limit is None or limit.max is None else limit.max / size
+    limits = LinkageLimits(longest=longest, within=compute_pivot_limits(problem, centre, size))
     # A few points do not define a shape; the spline through them is a plausible curve to compare with.
     smooth, places = sample_smooth_steps(points, closed=False)
     families = list_families(problem)
@@ -112,15 +112,14 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
             done = (turn + n / len(families)) / problem.rounds
             progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(members)} linkages meet all points")
             seed = int(np.random.default_rng([problem.seed, turn, n]).integers(2**31))
-            starts = find_similar(family, smooth, False, DRAW_COUNT, MAX_FOLLOWED, longest=longest, seed=seed)
+            compared = compare_shapes(family, smooth, False, DRAW_COUNT, seed=seed)
+            starts = select_most_similar(compared, MAX_FOLLOWED, longest)
             brought += len(starts.x)
             if not len(starts.x):
                 continue
             signs = [float(sign) for sign in starts.sign]
             theta = np.array([interpolate_crank_angles(places, angles, False, 0.0) for angles in starts.theta])
-            ends = descend(
-                family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=MAX_STEPS
-            )
+            ends = descend(family, starts.x, starts.sign, theta, points, limits, iterations=MAX_STEPS)
             setting = pack_setting(problem, centre, size, sign=1.0, family=family)
             lost = np.full(len(signs), math.inf)
             for k in np.flatnonzero(np.isfinite(ends.cost)):

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Complex
+from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.numerics.continuation import SYSTEM
 from synthesis.numerics.double_double import add, compute_reciprocal, multiply
@@ -74,12 +74,12 @@ _WEIGHTS = np.exp(1j * np.arange(1, 9) ** 2)
 
 
 @njit(**NJIT_OPTIONS)
-def _get(w: Any, at: int) -> complex:
+def _get(w: Real, at: int) -> complex:
     return complex(w[at], w[at + LANE_COUNT])
 
 
 @njit(**NJIT_OPTIONS)
-def _store(w: Any, at: int, z: complex) -> None:
+def _store(w: Real, at: int, z: complex) -> None:
     w[at], w[at + LANE_COUNT] = z.real, z.imag
 
 
@@ -90,7 +90,7 @@ def _invert(z: complex) -> complex:
 
 
 @njit(**NJIT_OPTIONS)
-def _load_points(y: Complex, p: Complex, dp: Complex, w: Any, points: int) -> None:
+def _load_points(y: Complex, p: Complex, dp: Complex, w: Real, points: int) -> None:
     """Copy rotations and parameters into the workspace, as vectors over the points."""
     for j in range(points):
         _store(w, S + j, y[8 + j])
@@ -101,7 +101,7 @@ def _load_points(y: Complex, p: Complex, dp: Complex, w: Any, points: int) -> No
 
 
 @njit(**NJIT_OPTIONS)
-def _compute_differences(y: Complex, w: Any, points: int) -> None:
+def _compute_differences(y: Complex, w: Real, points: int) -> None:
     """Compute α, β and the residuals of the equations at all points.
 
     The number of points is an argument so that loops over it are vectorized instead of unrolled.
@@ -125,7 +125,7 @@ def _compute_differences(y: Complex, w: Any, points: int) -> None:
 
 
 @njit(**NJIT_OPTIONS)
-def _build_equations(y: Complex, w: Any, points: int) -> None:
+def _build_equations(y: Complex, w: Real, points: int) -> None:
     """Compute the equations of each point with its rotation eliminated, and those that give the rotation."""
     x_1, c_1, r_1, d_1, x_2, c_2, r_2, d_2 = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
     for j in range(points):
@@ -290,7 +290,7 @@ def compute_conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
     return np.asarray(np.linalg.cond(jacobian))
 
 
-def compute_rotations(y: Any, p: Complex) -> Complex:
+def compute_rotations(y: Complex | NDArray[np.clongdouble], p: Complex) -> Complex:
     """Return the rotations, minus 1, of coupler, first and second link at the points: shape (..., 3, 8)."""
     s = y[..., 8:]
     links = [(p[:8] + y[..., k, None] * s) / y[..., k + 2, None] for k in (0, 4)]

@@ -123,18 +123,17 @@ def fit_place(lengths: Real, sign: float, angles: Real, points: Real, setting: R
         target[k] = complex(points[k, 0], points[k, 1])
     # A given pivot is subtracted instead of the mean; a partly given one counts as free here, and as a constraint
     # later.
-    pivot_given = not (math.isnan(setting[GIVEN_PIVOTS]) or math.isnan(setting[GIVEN_PIVOTS + 1]))
-    ground_given = pivot_given and not (math.isnan(setting[GIVEN_PIVOTS + 2]) or math.isnan(setting[GIVEN_PIVOTS + 3]))
+    pivots = setting[GIVEN_PIVOTS]
+    pivot_given = not (math.isnan(pivots[0]) or math.isnan(pivots[1]))
+    ground_given = pivot_given and not (math.isnan(pivots[2]) or math.isnan(pivots[3]))
     mean_crank, mean_coupler, mean_target = 0.0j, 0.0j, 0.0j
     if pivot_given:
-        mean_target = complex(setting[GIVEN_PIVOTS], setting[GIVEN_PIVOTS + 1])
+        mean_target = complex(pivots[0], pivots[1])
     else:
         mean_crank, mean_coupler, mean_target = crank.mean(), coupler.mean(), target.mean()
     on_crank, on_target, ground = _fit_ground(crank, coupler, target, mean_crank, mean_coupler, mean_target)
     if ground_given:
-        ground = complex(
-            setting[GIVEN_PIVOTS + 2] - setting[GIVEN_PIVOTS], setting[GIVEN_PIVOTS + 3] - setting[GIVEN_PIVOTS + 1]
-        )
+        ground = complex(pivots[2] - pivots[0], pivots[3] - pivots[1])
     elif setting[TIMING_INDEX] > 0.0 and setting[PHASE_REFERENCE_INDEX] == PHASE_ABSOLUTE:
         along = compute_unit_vector(turn)
         # Absolute crank angles fix the direction of the ground line; only its length is free.

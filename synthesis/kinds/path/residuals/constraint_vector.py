@@ -12,15 +12,16 @@ import numpy as np
 
 from kinematics.arrays import Real
 from synthesis.fit.constraints import (
-    BOXES,
     CHANGE_POINT,
     COSINE,
     FAMILY_INDEX,
     FULL_TURN_INDEX,
     GIVEN_PIVOTS,
+    INPUT_BOX,
     LIMIT_COUNT,
     LINKS,
     MOVING,
+    OUTPUT_BOX,
     POINT_BOX,
     RATIO,
     SETTING_SIZE,
@@ -31,12 +32,21 @@ from synthesis.fit.workspace import pack_workspace, select_zones
 from synthesis.fit.workspace_margins import count_margins
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage.problem import Region
+from synthesis.numerics.array_layout import ArrayLayout
 
-TIMING_INDEX, PHASE_REFERENCE_INDEX, ORDER_INDEX = range(SETTING_SIZE, SETTING_SIZE + 3)
-"""Indices in a setting behind the constraints: whether timing is prescribed, the line from which crank angles are
-measured, and whether points are met in order."""
+PATH_SETTING = ArrayLayout(SETTING_SIZE, timing=1, phase_reference=1, order=1)
+"""Setting of a fit to points, behind the constraints."""
 
-PATH_SETTING_SIZE = SETTING_SIZE + 3
+TIMING_INDEX = PATH_SETTING.index("timing")
+"""Whether timing is prescribed."""
+
+PHASE_REFERENCE_INDEX = PATH_SETTING.index("phase_reference")
+"""Line from which crank angles are measured."""
+
+ORDER_INDEX = PATH_SETTING.index("order")
+"""Whether points are met in order."""
+
+PATH_SETTING_SIZE = PATH_SETTING.size
 """Number of values of a setting; the packed workspace (:mod:`synthesis.fit.workspace`), if any, follows them."""
 
 PHASE_FREE, PHASE_ABSOLUTE, PHASE_GROUND_LINE = range(3)
@@ -93,27 +103,27 @@ def pack_setting(
         most = min(most, max(usable.longest, 2.0 * least))
         out[RATIO] = usable.ratio
         out[COSINE] = math.cos(math.radians(usable.transmission))
-    out[LINKS], out[LINKS + 1] = least * (1.0 + LIMIT_MARGIN), most * (1.0 - LIMIT_MARGIN)
+    out[LINKS] = least * (1.0 + LIMIT_MARGIN), most * (1.0 - LIMIT_MARGIN)
     if limits.max_link_ratio is not None:
         out[RATIO] = min(out[RATIO], limits.max_link_ratio * (1.0 - LIMIT_MARGIN))
-    out[BOXES : BOXES + 4] = _intersect_regions([limits.fixed_pivot_region, limits.input_pivot_region], origin, size)
-    out[BOXES + 4 : BOXES + 8] = _intersect_regions([limits.fixed_pivot_region], origin, size)
-    out[POINT_BOX : POINT_BOX + 4] = -math.inf, math.inf, -math.inf, math.inf
+    out[INPUT_BOX] = _intersect_regions([limits.fixed_pivot_region, limits.input_pivot_region], origin, size)
+    out[OUTPUT_BOX] = _intersect_regions([limits.fixed_pivot_region], origin, size)
+    out[POINT_BOX] = -math.inf, math.inf, -math.inf, math.inf
     if limits.coupler_point is not None:
         for k, interval in enumerate((limits.coupler_point.along, limits.coupler_point.across)):
             if interval is not None:
-                out[POINT_BOX + 2 * k : POINT_BOX + 2 * k + 2] = interval[0] / size, interval[1] / size
+                out[POINT_BOX][2 * k : 2 * k + 2] = interval[0] / size, interval[1] / size
     if limits.min_transmission_angle is not None:
         out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - LIMIT_MARGIN))
-    out[MOVING : MOVING + 4] = _intersect_regions([limits.moving_pivot_region], origin, size)
+    out[MOVING] = _intersect_regions([limits.moving_pivot_region], origin, size)
     # NaN marks a coordinate that is not given.
-    out[GIVEN_PIVOTS : GIVEN_PIVOTS + 4] = math.nan
+    out[GIVEN_PIVOTS] = math.nan
     for k, pivot in enumerate((problem.fixed_pivots.input, problem.fixed_pivots.output)):
         x, y = pivot or (None, None)
         if x is not None:
-            out[GIVEN_PIVOTS + 2 * k] = (x - origin.real) / size
+            out[GIVEN_PIVOTS][2 * k] = (x - origin.real) / size
         if y is not None:
-            out[GIVEN_PIVOTS + 2 * k + 1] = (y - origin.imag) / size
+            out[GIVEN_PIVOTS][2 * k + 1] = (y - origin.imag) / size
     return np.concatenate([out, pack_path_workspace(problem, origin, size)])
 
 

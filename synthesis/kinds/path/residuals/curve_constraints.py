@@ -70,8 +70,8 @@ def pack_curve_setting(problem: PathProblem, centre: complex, size: float) -> Re
     """
     setting = pack_setting(problem, centre, size, sign=1.0, family=FOURBAR)
     lengths = problem.constraints.link_length
-    setting[LINKS] = 0.0 if lengths is None else lengths.min / size * (1.0 + LIMIT_MARGIN)
-    setting[LINKS + 1] = problem.longest_link / size * (1.0 - LIMIT_MARGIN)
+    shortest = 0.0 if lengths is None else lengths.min / size * (1.0 + LIMIT_MARGIN)
+    setting[LINKS] = shortest, problem.longest_link / size * (1.0 - LIMIT_MARGIN)
     # A curve has no timing, and its nearest places follow in order by themselves.
     setting[CHANGE_POINT] = setting[TIMING_INDEX] = setting[ORDER_INDEX] = 0.0
     setting[FULL_TURN_INDEX] = problem.closed or problem.constraints.full_rotation
@@ -84,25 +84,23 @@ def compute_pivot_limits(problem: PathProblem, centre: complex, size: float) -> 
     A given coordinate has equal bounds.
     """
     setting = pack_setting(problem, centre, size, sign=1.0, family=FOURBAR)
-    within = setting[BOXES : BOXES + 8].reshape(4, 2)
-    given = setting[GIVEN_PIVOTS : GIVEN_PIVOTS + 4, None]
+    within = setting[BOXES].reshape(4, 2)
+    given = setting[GIVEN_PIVOTS, None]
     return np.where(np.isnan(given), within, given)
 
 
 def tighten_to_usable(setting: Real, degrees: float, ratio: float) -> Real:
     """Return a copy of the setting with a minimum transmission angle (degrees) and a maximum link ratio."""
-    stated = setting.copy()
-    stated[COSINE] = math.cos(math.radians(degrees))
-    stated[RATIO] = min(stated[RATIO], ratio)
-    return stated
+    tightened = setting.copy()
+    tightened[COSINE] = math.cos(math.radians(degrees))
+    tightened[RATIO] = min(tightened[RATIO], ratio)
+    return tightened
 
 
 def is_place_constrained(setting: Real) -> bool:
     """Return whether the constraints depend on where a linkage stands and how large it is, beyond its longest link."""
-    boxes = np.concatenate(
-        [setting[BOXES : BOXES + 8], setting[MOVING : MOVING + 4], setting[POINT_BOX : POINT_BOX + 4]]
-    )
-    return bool(np.isfinite(boxes).any() or setting[LINKS] > 0.0 or len(setting) > PATH_SETTING_SIZE)
+    boxes = np.concatenate([setting[BOXES], setting[MOVING], setting[POINT_BOX]])
+    return bool(np.isfinite(boxes).any() or setting[LINKS][0] > 0.0 or len(setting) > PATH_SETTING_SIZE)
 
 
 def check_lengths(setting: Real, links: tuple[float, float, float, float]) -> bool:
@@ -110,7 +108,7 @@ def check_lengths(setting: Real, links: tuple[float, float, float, float]) -> bo
     # Both bounds may be off by a rounding, hence twice the tolerance.
     slack = 1.0 + 2.0 * LENGTH_TOLERANCE
     short, long = min(links), max(links)
-    least, most, ratio = setting[LINKS], setting[LINKS + 1], setting[RATIO]
+    (least, most), ratio = setting[LINKS], setting[RATIO]
     return bool(long <= most * slack and short * slack >= least and long <= ratio * short * slack)
 
 
@@ -200,16 +198,16 @@ def measure_violations(family: int, x: Real, theta: Real, sign: Real, setting: R
     """
     lengths, slopes, still = np.empty(4), np.empty((4, 4)), np.zeros(x.shape[1])
     values, gradients = np.empty(LIMIT_COUNT), np.empty((LIMIT_COUNT, x.shape[1]))
-    stated, worst = setting.copy(), np.zeros(len(x))
-    stated[FAMILY_INDEX] = family
+    own_setting, worst = setting.copy(), np.zeros(len(x))
+    own_setting[FAMILY_INDEX] = family
     room = setting[PATH_SETTING_SIZE:]
     roomy = count_margins(room)
     kept, rows = np.empty(roomy), np.empty((roomy, ROW_SIZE))
     for i in range(len(x)):
-        stated[SIGN_INDEX] = sign[i]
+        own_setting[SIGN_INDEX] = sign[i]
         compute_lengths(family, x[i], lengths, slopes)
         ends = np.array([theta[i, 0] - x[i, 2], theta[i, -1] - x[i, 2]])
-        compute_margins(x[i], lengths, slopes, ends, still, stated, values, gradients)
+        compute_margins(x[i], lengths, slopes, ends, still, own_setting, values, gradients)
         for k in range(LIMIT_COUNT):
             if values[k] < np.inf:
                 # The last margins are equations, violated on both sides; the others only where they are negative.
@@ -228,13 +226,9 @@ def check_shapes(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
     """
     shape = np.full(PATH_SETTING_SIZE, math.inf)
     # Infinite limits switch off everything that depends on size and place.
-    shape[FAMILY_INDEX], shape[SIGN_INDEX], shape[FULL_TURN_INDEX], shape[LINKS] = (
-        family,
-        1.0,
-        setting[FULL_TURN_INDEX],
-        0.0,
-    )
-    shape[CHANGE_POINT], shape[GIVEN_PIVOTS : GIVEN_PIVOTS + 4] = 0.0, math.nan
+    shape[FAMILY_INDEX], shape[SIGN_INDEX], shape[FULL_TURN_INDEX] = family, 1.0, setting[FULL_TURN_INDEX]
+    shape[LINKS] = 0.0, math.inf
+    shape[CHANGE_POINT], shape[GIVEN_PIVOTS] = 0.0, math.nan
     shape[RATIO] = setting[RATIO]
     if setting[FULL_TURN_INDEX] > 0.0:
         shape[COSINE] = setting[COSINE]

@@ -62,6 +62,31 @@ CYCLE_SAMPLE_COUNT, MIN_TRANSMISSION_SINE = 48, 0.05
 angle there: a margin, so that it does not jam between them either."""
 
 
+class LinkageLimits(NamedTuple):
+    """Gear ratio and limits of the linkages of a family.
+
+    Attributes
+    ----------
+    ratio : float
+        Gear ratio, for geared fivebars.
+    longest : float
+        Longest link; the excess of longer ones adds to the cost by :data:`LENGTH_WEIGHT`.
+    cycle : float
+        For geared fivebars: the crank's full cycle, over which it must not jam; 0 if it need not turn through.
+    within : float, shape (4, 2), optional
+        Minimum and maximum x and y of O2, then of the other fixed pivot. The distance from these bounds is a residual
+        like that of a point, so that a cost of zero means that they hold. Slider-cranks do not use the last two rows.
+    """
+
+    ratio: float = 0.0
+    longest: float = math.inf
+    cycle: float = 0.0
+    within: Real = UNLIMITED_PIVOTS
+
+
+NO_LIMITS = LinkageLimits()
+
+
 class Descent(NamedTuple):
     """Ends of descents: unknowns (n, m), crank angles (n, points), and sums of squared distances (n,)."""
 
@@ -368,12 +393,9 @@ def descend(
     sign: Real,
     theta: Real,
     points: Complex,
+    limits: LinkageLimits = NO_LIMITS,
     *,
-    ratio: float = 0.0,
     weights: Real | None = None,
-    longest: float = math.inf,
-    cycle: float = 0.0,
-    within: Real | None = None,
     iterations: int = 60,
 ) -> Descent:
     """Minimize the sum of squared distances of the points from the curve, from every start.
@@ -386,17 +408,10 @@ def descend(
         Starts: unknowns, assembly signs, crank angles at the points, radians.
     points : complex, shape (points,)
         In task sizes.
-    ratio : float
-        Gear ratio, for geared fivebars.
+    limits : LinkageLimits
+        Gear ratio and limits of the linkages, in task sizes.
     weights : float, shape (points,), optional
         Weights of the squared distances.
-    longest : float
-        Longest link; the excess of longer ones adds to the cost by :data:`LENGTH_WEIGHT`.
-    cycle : float
-        For geared fivebars: the crank's full cycle, over which it must not jam; 0 if it need not turn through.
-    within : float, shape (4, 2), optional
-        Minimum and maximum x and y of O2, then of the other fixed pivot. The distance from these bounds is a residual
-        like that of a point, so that a cost of zero means that they hold. Slider-cranks do not use the last two rows.
     iterations : int
         Maximum number of accepted steps.
     """
@@ -404,20 +419,20 @@ def descend(
     w = np.ones(len(points)) if weights is None else np.ascontiguousarray(weights, np.float64)
     cost = np.empty(len(x))
     signs, targets = np.ascontiguousarray(sign, np.float64), np.ascontiguousarray(points, np.complex128)
-    inside = UNLIMITED_PIVOTS if within is None else np.ascontiguousarray(within, np.float64)
-    limit = longest if math.isfinite(longest) else UNLIMITED_LENGTH
+    inside = np.ascontiguousarray(limits.within, np.float64)
+    longest = limits.longest if math.isfinite(limits.longest) else UNLIMITED_LENGTH
 
     def process_portion(some: slice) -> None:
         _descend_all(
             family,
             x[some],
             signs[some],
-            ratio,
+            limits.ratio,
             theta[some],
             targets,
             w,
-            limit,
-            cycle,
+            longest,
+            limits.cycle,
             inside,
             iterations,
             cost[some],

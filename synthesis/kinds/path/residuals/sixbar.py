@@ -26,12 +26,12 @@ from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS, compute_lengths
 from synthesis.fit.constraints import (
-    BOXES,
     COSINE,
     EQUATION_COUNT,
     FAMILY_INDEX,
     LIMIT_COUNT,
     LINKS,
+    OUTPUT_BOX,
     RATIO,
     SETTING_SIZE,
     SIGN_INDEX,
@@ -53,15 +53,26 @@ from synthesis.fit.sixbar_curve import (
     differentiate_point,
     locate_joints,
 )
+from synthesis.numerics.array_layout import ArrayLayout
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
-CARRIER, HOLDER, SIDE, STEPS, BACK, ROOM = range(SETTING_SIZE, SETTING_SIZE + 6)
-"""Indices in a setting behind the constraints: links that carry and hold the dyad, its assembly, number of equal steps
-of the crank, the weight of the way back per step (a square root; 0 if it does not count), and the box that all joints
-stay in (x from, to, y from, to; infinite if there is none)."""
+SIXBAR_SETTING = ArrayLayout(SETTING_SIZE, carrier=1, holder=1, side=1, steps=1, back=1, room=4)
+"""Setting of a fit of sixbars, behind the constraints."""
 
-SIXBAR_SETTING_SIZE = SETTING_SIZE + 9
+CARRIER, HOLDER, SIDE = SIXBAR_SETTING.index("carrier"), SIXBAR_SETTING.index("holder"), SIXBAR_SETTING.index("side")
+"""Links that carry and hold the dyad, and its assembly."""
+
+STEPS = SIXBAR_SETTING.index("steps")
+"""Number of equal steps of the crank."""
+
+BACK = SIXBAR_SETTING.index("back")
+"""Weight of the way back per step, a square root; 0 if it does not count."""
+
+ROOM = SIXBAR_SETTING.slice("room")
+"""Box that all joints stay in (x from, to, y from, to); infinite if there is none."""
+
+SIXBAR_SETTING_SIZE = SIXBAR_SETTING.size
 """Number of values of a setting."""
 
 EXTRA_LENGTH_COUNT = 6
@@ -147,7 +158,7 @@ def compute_own_margins(
     number = 0
     for k in range(4, 4 + EXTRA_LENGTH_COUNT):
         for end in range(2):
-            limit, toward = setting[LINKS + end], 1.0 if end == 0 else -1.0
+            limit, toward = setting[LINKS][end], 1.0 if end == 0 else -1.0
             if 0.0 < limit < np.inf:
                 values[number] = toward * (logs[k] - math.log(limit))
                 gradients[number] = toward * slopes[k]
@@ -166,7 +177,7 @@ def compute_own_margins(
         number += EXTRA_LENGTH_COUNT * (EXTRA_LENGTH_COUNT - 1) + 8 * EXTRA_LENGTH_COUNT
     if setting[HOLDER] == GROUND:
         for k in range(4):
-            limit, toward = setting[BOXES + 4 + k], 1.0 if k % 2 == 0 else -1.0
+            limit, toward = setting[OUTPUT_BOX][k], 1.0 if k % 2 == 0 else -1.0
             if abs(limit) < np.inf:
                 values[number + k] = toward * (x[D + k // 2] - limit)
                 gradients[number + k] = 0.0
@@ -296,7 +307,7 @@ def _write_edge_margins(
     Derivatives are written only for margins that bear a load. The last four arrays are scratch.
     """
     for edge in range(4):
-        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        limit, toward = setting[ROOM][edge], 1.0 if edge % 2 == 0 else -1.0
         least, nearest = np.inf, 0
         for joint in range(6):
             at = places[joint].real if edge < 2 else places[joint].imag

@@ -29,6 +29,7 @@ from synthesis.fit.sixbar_curve import UNKNOWNS, differentiate_pins, differentia
 from synthesis.kinds.path.residuals.curve_descent import count_links, is_jamming, measure_pivot_violations
 from synthesis.kinds.path.residuals.points import compute_path_rows
 from synthesis.kinds.path.residuals.sixbar import CARRIER, HOLDER, SIDE, compute_sixbar_rows
+from synthesis.numerics.array_layout import ArrayLayout
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
@@ -41,22 +42,48 @@ MARGIN_COUNT = 4 * PLACE_COUNT
 DIFFERENCE_STEP = 1e-3
 """δ, radians: a height is the mean of two places separated by 2δ, with an error δ²/2 of P's acceleration."""
 
-FIRST, LAST, CYCLE, COSINE, SINE, FLATNESS, OFF_MEAN = range(7)
-"""Indices in a setting, before all others: the rows of the stance's first and last point, the input's cycle if the
-stance continues past the last row (radians, else 0), the direction of its line, the flatness, in the task's unit, and
-the share by which the speed may differ from its mean; infinite if not constrained."""
+STANCE = ArrayLayout(first=1, last=1, cycle=1, cosine=1, sine=1, flatness=1, off_mean=1)
+"""Stance in a setting, before everything else."""
 
-STANCE_SIZE = 7
+FIRST, LAST = STANCE.index("first"), STANCE.index("last")
+"""Rows of the stance's first and last point."""
+
+CYCLE = STANCE.index("cycle")
+"""The input's cycle, radians, if the stance continues past the last row; otherwise 0."""
+
+COSINE, SINE = STANCE.index("cosine"), STANCE.index("sine")
+"""Direction of the stance line."""
+
+FLATNESS = STANCE.index("flatness")
+"""Flatness, in the task's unit; infinite if not constrained."""
+
+OFF_MEAN = STANCE.index("off_mean")
+"""Share by which the speed may differ from its mean; infinite if not constrained."""
+
+STANCE_SIZE = STANCE.size
 """Number of values of a stance in a setting."""
 
-SIMPLE_FAMILY, SIMPLE_SIGN, RATIO, LONGEST, JAM_CYCLE, TRANSMISSION_COSINE, PIVOT_LIMITS = range(
-    STANCE_SIZE, STANCE_SIZE + 7
+SIMPLE_SETTING = ArrayLayout(
+    STANCE_SIZE, family=1, sign=1, ratio=1, longest=1, jam_cycle=1, transmission_cosine=1, pivot_limits=8
 )
-"""Indices in the setting of a slider-crank or a geared fivebar behind those: family, assembly, gear ratio, longest
-link, the cycle in which it must not jam, the cosine of the minimum transmission angle of a crank that turns through,
-and the limits of fixed pivots (4, 2)."""
+"""Setting of a slider-crank or a geared fivebar, behind the stance."""
 
-SIMPLE_SIZE = STANCE_SIZE + 14
+SIMPLE_FAMILY, SIMPLE_SIGN = SIMPLE_SETTING.index("family"), SIMPLE_SETTING.index("sign")
+"""Family and assembly."""
+
+RATIO, LONGEST = SIMPLE_SETTING.index("ratio"), SIMPLE_SETTING.index("longest")
+"""Gear ratio, and longest link."""
+
+JAM_CYCLE = SIMPLE_SETTING.index("jam_cycle")
+"""Cycle in which it must not jam, radians."""
+
+TRANSMISSION_COSINE = SIMPLE_SETTING.index("transmission_cosine")
+"""Cosine of the minimum transmission angle of a crank that turns through."""
+
+PIVOT_LIMITS = SIMPLE_SETTING.slice("pivot_limits")
+"""Limits of fixed pivots, (4, 2) in rows."""
+
+SIMPLE_SIZE = SIMPLE_SETTING.size
 """Number of values of that setting."""
 
 LENGTH_MARGIN_COUNT, PIVOT_MARGIN_COUNT = 6, 4
@@ -361,7 +388,7 @@ def compute_simple_stance_rows(
     _compute_length_margins(family, x, lengths, chart, setting[LONGEST], values, gradients)
     if family == SLIDER_CRANK:
         _compute_angle_margin(lengths, chart, setting[TRANSMISSION_COSINE], values, gradients)
-    within = np.ascontiguousarray(setting[PIVOT_LIMITS:SIMPLE_SIZE]).reshape(4, 2)
+    within = np.ascontiguousarray(setting[PIVOT_LIMITS]).reshape(4, 2)
     measure_pivot_violations(family, x, lengths, chart, within, off, slopes)
     for k in range(PIVOT_MARGIN_COUNT):
         values[LENGTH_MARGIN_COUNT + k], gradients[LENGTH_MARGIN_COUNT + k] = off[k], slopes[k]

@@ -81,19 +81,20 @@ def _compute_link_margins(
 ) -> int:
     """Compute margins of lengths and ratios, as those of a Stephenson III on the input; return the number of the next
     margin."""
-    here, stated = x.copy(), setting.copy()
+    here, neutral = x.copy(), setting.copy()
     # The input is the ground of the inverted chain, so that place and direction, and all boxes of the frame, are
     # neutralized.
     here[:3] = 0.0
-    stated[CARRIER], stated[HOLDER], stated[COSINE] = COUPLER, GROUND, np.inf
-    for edge in range(8):
-        stated[BOXES + edge] = -np.inf if edge % 2 == 0 else np.inf
-    for edge in range(4):
-        stated[MOVING + edge] = -np.inf if edge % 2 == 0 else np.inf
-        stated[GIVEN_PIVOTS + edge] = np.nan
-    number: int = compute_own_margins(here, lengths, chart, stated, multipliers, values, rows)
+    neutral[CARRIER], neutral[HOLDER], neutral[COSINE] = COUPLER, GROUND, np.inf
+    boxes, moving = neutral[BOXES], neutral[MOVING]
+    for edge in range(len(boxes)):
+        boxes[edge] = -np.inf if edge % 2 == 0 else np.inf
+    for edge in range(len(moving)):
+        moving[edge] = -np.inf if edge % 2 == 0 else np.inf
+    neutral[GIVEN_PIVOTS] = np.nan
+    number: int = compute_own_margins(here, lengths, chart, neutral, multipliers, values, rows)
     first, still = len(values) - LIMIT_COUNT, np.zeros(UNKNOWNS)
-    compute_margins(here, lengths, chart, np.zeros(2), still, stated, values[first:], rows[first:])
+    compute_margins(here, lengths, chart, np.zeros(2), still, neutral, values[first:], rows[first:])
     for k in range(len(values)):
         if k < number or k >= first:
             rows[k, :3] = 0.0
@@ -116,12 +117,12 @@ def _compute_pivot_margins(x: Real, setting: Real, values: Real, rows: Real) -> 
                 place += ground * along
                 by[2], by[DYAD + 1] = ground * across, ground * along
             for side in range(2):
-                limit, toward = setting[BOXES + 4 * pivot + 2 * axis + side], 1.0 if side == 0 else -1.0
+                limit, toward = setting[BOXES][4 * pivot + 2 * axis + side], 1.0 if side == 0 else -1.0
                 if abs(limit) < np.inf:
                     number = first + PIVOT_MARGIN + 4 * pivot + 2 * axis + side
                     values[number] = toward * (place - limit)
                     rows[number] = toward * by
-            given = setting[GIVEN_PIVOTS + 2 * pivot + axis]
+            given = setting[GIVEN_PIVOTS][2 * pivot + axis]
             if not math.isnan(given):
                 number = len(values) - EQUATION_COUNT + 2 * pivot + axis
                 values[number] = place - given
@@ -136,7 +137,7 @@ def _write_edge_margins(
     loaded."""
     pressed = False
     for edge in range(4):
-        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        limit, toward = setting[ROOM][edge], 1.0 if edge % 2 == 0 else -1.0
         values[number + edge] = np.inf
         for joint in range(GROUND_JOINT_COUNT):
             at = places[joint].real if edge < 2 else places[joint].imag
@@ -154,7 +155,7 @@ def _differentiate_edge_margins(
     for edge in range(4):
         if not values[number + edge] < multipliers[number + edge] / weight:
             continue
-        limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+        limit, toward = setting[ROOM][edge], 1.0 if edge % 2 == 0 else -1.0
         for joint in range(GROUND_JOINT_COUNT):
             at = places[joint].real if edge < 2 else places[joint].imag
             # Only the joint that is nearest to the edge determines the margin.

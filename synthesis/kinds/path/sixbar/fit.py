@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from synthesis.fit.constraints import (
-    BOXES,
     CHANGE_POINT,
     COSINE,
     FAMILY_INDEX,
     FULL_TURN_INDEX,
+    INPUT_BOX,
+    OUTPUT_BOX,
     RATIO,
     SETTING_SIZE,
     SIGN_INDEX,
@@ -61,6 +62,17 @@ MAX_ROUNDS, MAX_CONSTRAINED_STEPS = 8, 60
 """Maximum number of descents under enforced constraints, with a multiplier update after each, and of steps of each."""
 
 
+class CrankSteps(NamedTuple):
+    """Numbers of equal crank steps: those at which the curve's distance from the points counts too (0 for none), and
+    those at which the transmission angle is constrained."""
+
+    back: int
+    margins: int
+
+
+DEFAULT_CRANK_STEPS = CrankSteps(0, 36)
+
+
 class SixbarFits(NamedTuple):
     """Sixbars of one form: unknowns (n, 15), signs (n, 2), crank angles (n, points), and half their sums of squares."""
 
@@ -85,14 +97,13 @@ def pack_sixbar_setting(problem: PathProblem, centre: complex, size: float, degr
     out[FULL_TURN_INDEX], out[CHANGE_POINT] = 1.0, MIN_GRASHOF
     out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
     out[RATIO] = min(out[RATIO], ratio)
-    out[ROOM : ROOM + 4] = -math.inf, math.inf, -math.inf, math.inf
+    out[ROOM] = -math.inf, math.inf, -math.inf, math.inf
     # Only the box is constrained in fits; obstacles are checked on the driven sixbar.
     room = None if problem.space is None else problem.space.shrink_box_for_joints(WORKSPACE_MARGIN * size)
     if room is not None:
         within = (np.array(room) - np.repeat([centre.real, centre.imag], 2)) / size
-        out[ROOM : ROOM + 4] = within
-        for pivot in range(2):
-            at = slice(BOXES + 4 * pivot, BOXES + 4 * pivot + 4)
+        out[ROOM] = within
+        for at in (INPUT_BOX, OUTPUT_BOX):
             out[at] = np.where(np.arange(4) % 2, np.minimum(out[at], within), np.maximum(out[at], within))
     return out
 
@@ -104,8 +115,7 @@ def descend_softly(
     setting: Real,
     *,
     steps: int,
-    back: int = 0,
-    turns: int = 36,
+    crank_steps: CrankSteps = DEFAULT_CRANK_STEPS,
     tolerance: float = SOFT_TOLERANCE,
 ) -> SixbarFits:
     """Descend a limited number of steps with constraints as penalties, which may remain violated a little.
@@ -119,12 +129,11 @@ def descend_softly(
         Constraints from :func:`pack_sixbar_setting`.
     steps : int
         Maximum number of steps.
-    back, turns : int
-        Number of crank steps at which the curve's distance from the points counts too (0 for none), and number of
-        those at which the transmission angle is constrained.
+    crank_steps : CrankSteps
+        Crank steps at which the curve is constrained.
     """
-    rows, stated = _build_rows(fits.form, points, weights, setting, back, turns)
-    limits = count_sixbar_margins(stated)
+    rows, form_setting = _build_rows(fits.form, points, weights, setting, crank_steps)
+    limits = count_sixbar_margins(form_setting)
     x, theta, cost = fits.x.copy(), fits.theta.copy(), np.empty(len(fits.x))
     statuses = np.empty(len(x), np.int64)
     states = np.concatenate([theta, np.zeros((len(x), limits))], axis=1)
@@ -134,7 +143,7 @@ def descend_softly(
 
     def process_portion(some: slice) -> None:
         for k in range(*some.indices(len(x))):
-            one = stated.copy()
+            one = form_setting.copy()
             one[SIGN_INDEX], one[SIDE] = fits.signs[k]
             row = slice(k, k + 1)
             descend_each(
@@ -147,25 +156,32 @@ def descend_softly(
 
 
 def fit_constrained(
-    fits: SixbarFits, points: Complex, weights: Real, setting: Real, *, back: int, turns: int, rounds: int = MAX_ROUNDS,
-    steps: int = MAX_CONSTRAINED_STEPS, stance: Real | None = None,
-) -> SixbarFits:  # fmt: skip
+    fits: SixbarFits,
+    points: Complex,
+    weights: Real,
+    setting: Real,
+    crank_steps: CrankSteps,
+    *,
+    rounds: int = MAX_ROUNDS,
+    steps: int = MAX_CONSTRAINED_STEPS,
+    stance: Real | None = None,
+) -> SixbarFits:
     """Lead fits to satisfy all constraints; an infinite cost marks the fits that fail.
 
     ``stance`` describes a stance by the points' rows, see :func:`synthesis.kinds.path.curve.stance_fit.pack_stance`.
     """
-    rows, stated = _build_rows(fits.form, points, weights, setting, back, turns)
+    rows, form_setting = _build_rows(fits.form, points, weights, setting, crank_steps)
     kernel, first, more = (
         (_select_kernel(fits.form), 0, 0) if stance is None else (compute_sixbar_stance_rows, STANCE_SIZE, MARGIN_COUNT)
     )
-    limits, most = count_sixbar_margins(stated) + more, count_sixbar_rows(len(points), stated) + more
-    stated = stated if stance is None else np.concatenate([stance, stated])
+    limits, most = count_sixbar_margins(form_setting) + more, count_sixbar_rows(len(points), form_setting) + more
+    form_setting = form_setting if stance is None else np.concatenate([stance, form_setting])
     x, cost = fits.x.copy(), np.full(len(fits.x), math.inf)
     states = np.concatenate([fits.theta, np.zeros((len(x), limits))], axis=1)
 
     def process_portion(some: slice) -> None:
         for k in range(*some.indices(len(x))):
-            one, ended = stated.copy(), np.empty(1)
+            one, ended = form_setting.copy(), np.empty(1)
             # The assembly is part of the setting, and differs from fit to fit.
             one[first + SIGN_INDEX], one[first + SIDE] = fits.signs[k]
             status = descend_constrained(
@@ -188,11 +204,14 @@ def _select_kernel(form: Form) -> Any:
     return compute_inverted_rows if form.holder == INPUT else compute_sixbar_rows
 
 
-def _build_rows(form: Form, points: Complex, weights: Real, setting: Real, back: int, turns: int) -> tuple[Real, Real]:
+def _build_rows(
+    form: Form, points: Complex, weights: Real, setting: Real, crank_steps: CrankSteps
+) -> tuple[Real, Real]:
     """Return the rows of the points, and the setting of a form."""
-    stated = setting.copy()
-    stated[FAMILY_INDEX], stated[CARRIER], stated[HOLDER] = form
-    stated[STEPS] = max(back, turns)
+    form_setting = setting.copy()
+    form_setting[FAMILY_INDEX], form_setting[CARRIER], form_setting[HOLDER] = form
+    back = crank_steps.back
+    form_setting[STEPS] = max(back, crank_steps.margins)
     # Both directions count equally: the steps of the curve share the total weight of the points.
-    stated[BACK] = math.sqrt(float(weights.sum()) / back) if back else 0.0
-    return np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1), stated
+    form_setting[BACK] = math.sqrt(float(weights.sum()) / back) if back else 0.0
+    return np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1), form_setting

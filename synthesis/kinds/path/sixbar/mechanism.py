@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from kinematics.arrays import Real
@@ -41,7 +39,7 @@ def build_fitted_sixbar(
     o2 = complex(x[0], x[1])
     o4 = o2 + lengths[0] * np.exp(1j * x[2])
     at = dict(zip(("A", "B", "C", "D", "E", "P"), places, strict=True)) | {"O2": o2, "O4": o4}
-    links: dict[str, Any] = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
+    links = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
     if form.holder == GROUND:
         # A Stephenson III's dyad is held by the ground: its pin D becomes the third pivot.
         at["O6"], at["D"] = at["D"], at.pop("E")
@@ -65,7 +63,7 @@ def _build_inverted(
     o2 = complex(x[0], x[1])
     at = {"A": shown[A0], "B": shown[A], "C": shown[B0], "D": shown[B], "E": shown[PIN], "P": shown[POINT]}
     at |= {"O2": o2, "O4": o2 + np.exp(x[DYAD + 1] + 1j * x[2])}
-    links: dict[str, Any] = {"ground": ["O2", "O4"], "input": ["O2", "A", "C"], "link_3": ["A", "B"]}
+    links = {"ground": ["O2", "O4"], "input": ["O2", "A", "C"], "link_3": ["A", "B"]}
     links |= {"link_4": ["B", "D", "E"], "link_5": ["C", "D"], "output": ["O4", "E"]}
     links[STEPHENSON_2_LINKS[form.carrier]].append("P")
     return _build_sixbar(kind, at, links, centre, size)

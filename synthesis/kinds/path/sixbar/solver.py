@@ -28,7 +28,7 @@ from synthesis.kinds.path.curve.stance_fit import pack_target_stance
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar.fit import SixbarFits, descend_softly, fit_constrained, pack_sixbar_setting
+from synthesis.kinds.path.sixbar.fit import CrankSteps, SixbarFits, descend_softly, fit_constrained, pack_sixbar_setting
 from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
 from synthesis.kinds.path.sixbar.shape_matching import FAMILIES, FORMS, find_similar_sixbars
 from synthesis.kinds.path.task.ranking import (
@@ -124,8 +124,7 @@ def warm_up() -> None:
             circle,
             np.ones(SHAPE_POINT_COUNT),
             setting,
-            back=SHAPE_POINT_COUNT,
-            turns=SHAPE_POINT_COUNT,
+            CrankSteps(SHAPE_POINT_COUNT, SHAPE_POINT_COUNT),
             rounds=1,
             steps=2,
         )
@@ -134,9 +133,9 @@ def warm_up() -> None:
 def _solve_by_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
     target = TargetCurve(problem)
     limits = problem.constraints
-    asked = limits.min_transmission_angle
+    required_angle = limits.min_transmission_angle
     # Without a required angle sixbars would often end next to a toggle, where they are useless.
-    least = ANGLE_MARGIN + (SOUND_TRANSMISSION_ANGLE if asked is None else asked)
+    least = ANGLE_MARGIN + (SOUND_TRANSMISSION_ANGLE if required_angle is None else required_angle)
     ratio = MAX_LINK_RATIO if limits.max_link_ratio is None else limits.max_link_ratio
     setting = pack_sixbar_setting(problem, target.centre, target.size, least, ratio)
     steps, places = target.steps, target.places
@@ -244,10 +243,16 @@ def _fit_candidates(
         at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, :fitted][:, part])
         if not problem.is_fitted:
             at = descend_softly(
-                at, points, weights, setting, steps=MAX_EXACT_STEPS, turns=ANGLE_STEP_COUNT, tolerance=EXACT_TOLERANCE
+                at,
+                points,
+                weights,
+                setting,
+                steps=MAX_EXACT_STEPS,
+                crank_steps=CrankSteps(0, ANGLE_STEP_COUNT),
+                tolerance=EXACT_TOLERANCE,
             )
         end = fit_constrained(
-            at, points, weights, setting, back=BACK_STEP_COUNT if dense else 0, turns=ANGLE_STEP_COUNT, stance=stance
+            at, points, weights, setting, CrankSteps(BACK_STEP_COUNT if dense else 0, ANGLE_STEP_COUNT), stance=stance
         )
         if math.isfinite(end.cost[0]):
             within.append(_Candidate(kind, end, float(end.cost[0])))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Any, Literal, get_args
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -16,6 +16,9 @@ from synthesis.model.linkage.type_choice import (
     select_requested_types,
 )
 from synthesis.model.problem import Contradiction
+
+if TYPE_CHECKING:
+    from synthesis.kinds.path.problem import PathProblem
 
 Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
 """Linkages with one closure."""
@@ -42,12 +45,12 @@ TURNING_CLASSES = ("any", "crank_rocker", "double_crank")
 """Classes of fourbars within sixbars: their crank turns through."""
 
 
-def list_simple_types(requested: Any) -> tuple[Simple, ...]:
+def list_simple_types(requested: Auto | Sequence[Simple | Sixbar] | None) -> tuple[Simple, ...]:
     """Return the requested types with one closure, the simplest first; under ``auto`` fourbars alone."""
     return ("fourbar",) if requested == "auto" else select_requested_types(requested, SIMPLE_TYPES)
 
 
-def find_mechanism_contradictions(problem: Any) -> list[Contradiction]:
+def find_mechanism_contradictions(problem: PathProblem) -> list[Contradiction]:
     """Return requests that contradict ``mechanisms``, or the types that it names."""
     stated, listed = problem.mechanisms, []
     if stated is None:
@@ -64,7 +67,7 @@ def find_mechanism_contradictions(problem: Any) -> list[Contradiction]:
     )
 
 
-def find_unsupported(problem: Any) -> Iterator[Contradiction]:
+def find_unsupported(problem: PathProblem) -> Iterator[Contradiction]:
     """Yield requests that sixbars do not support: those for fourbars alone, and others not implemented for them."""
     limits = problem.constraints
     for path, of_fourbars in (
@@ -78,7 +81,7 @@ def find_unsupported(problem: Any) -> Iterator[Contradiction]:
     yield from find_unsupported_by_sixbars(problem)
 
 
-def find_unsupported_unclassed(problem: Any) -> Iterator[Contradiction]:
+def find_unsupported_unclassed(problem: PathProblem) -> Iterator[Contradiction]:
     """Yield requests that a Stephenson II sixbar cannot satisfy, or that its search does not support."""
     yield from refuse_class(problem.constraints)
     if problem.stance is not None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from synthesis.model.problem import Contradiction, Count, PositiveLength, PositiveNumber, Statement
+
+if TYPE_CHECKING:
+    from synthesis.kinds.path.problem import PathProblem
 
 SPEED_TOLERANCE = 0.1
 """Default share by which a constant speed may differ from its mean."""
@@ -54,7 +57,7 @@ class Stance(Statement):
         return self.points[0] > self.points[1]
 
 
-def find_stance_errors(problem: Any) -> Iterator[Contradiction]:
+def find_stance_errors(problem: PathProblem) -> Iterator[Contradiction]:
     """Yield errors in a stance, and requests that contradict it."""
     stance: Stance | None = problem.stance
     if stance is None:
@@ -85,7 +88,7 @@ def find_stance_errors(problem: Any) -> Iterator[Contradiction]:
             yield Contradiction(path, detail)
 
 
-def _is_degenerate(problem: Any, first: int, last: int) -> bool:
+def _is_degenerate(problem: PathProblem, first: int, last: int) -> bool:
     points = np.array([point.point for point in problem.points])
     size = float(np.abs(np.concatenate([points.real, points.imag])).max())
     return bool(abs(points[last] - points[first]) <= PLACE_TOLERANCE * size)

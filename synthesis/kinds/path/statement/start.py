@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
 from synthesis.model.problem import Contradiction, Point, Statement
+
+if TYPE_CHECKING:
+    from synthesis.kinds.path.problem import PathProblem
 
 MIN_LINK_SHARE = 1e-6
 """A link shorter than this share of the longest has no length."""
@@ -35,7 +38,7 @@ class StartFourbar(Statement):
         return min(lengths) > MIN_LINK_SHARE * max(lengths)
 
 
-def find_start_errors(problem: Any) -> list[Contradiction]:
+def find_start_errors(problem: PathProblem) -> list[Contradiction]:
     """Return requests that contradict a start, and a start that is no linkage."""
     start = problem.start
     if start is None:

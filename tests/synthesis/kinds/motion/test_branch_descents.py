@@ -7,7 +7,7 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.sixbar import residuals as rows
-from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, TOPOLOGY_LINKS, A, B, J, compute_signed_sine
+from synthesis.kinds.motion.sixbar.dyad_assembly import O4, Q1, Q2, TOPOLOGY_LINKS, A, B, J, compute_signed_sine
 from synthesis.registry import parse_problem
 from tests.support.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
 
@@ -16,8 +16,8 @@ LIMITS = {
     "positions": {},
     "angles": {rows.COSINE: 0.6},
     "sizes": {rows.REACH: 1.5, rows.SHORTEST: 0.7, rows.LONGEST: 1.4, rows.RATIO: 1.5},
-    "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX, rows.JOINT_BOX)},
-    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.JOINT_BOX, rows.TARGET_X)},
+    "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX.start, rows.JOINT_BOX.start)},
+    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.JOINT_BOX.start, rows.JOINT_BOX.stop)},
 }
 LIMITS["first pose"] = LIMITS["sizes"] | LIMITS["room"] | {rows.TARGET_X: 0.3, rows.TARGET_Y: -0.2}
 
@@ -27,8 +27,8 @@ def drawn(rng: np.random.Generator, make: int, limits: dict[int, float]) -> tupl
     x = rng.normal(size=rows.JOINT_COORDINATE_COUNT + 4)
     x[rows.JOINT_COORDINATE_COUNT :] = np.log(rng.uniform(0.1, 0.5, 4))
     z = x[: rows.JOINT_COORDINATE_COUNT].view(complex)
-    setting = np.array([INF if n % 2 == 0 else -INF for n in range(rows.SETTING_SIZE)])
-    setting[: rows.FIXED_BOX] = make, 1.0, 0.0, 0.0, 1.0, INF, 0.0, INF, INF, 0.1, 0.2
+    setting = np.array([INF if n % 2 == 0 else -INF for n in range(rows.SETTING.size)])
+    setting[: rows.FIXED_BOX.start] = make, 1.0, 0.0, 0.0, 1.0, INF, 0.0, INF, INF, 0.1, 0.2
     setting[[rows.FIRST_SIDE, rows.SECOND_SIDE]] = np.sign(
         [compute_signed_sine(z[A], z[O4], z[B]), compute_signed_sine(z[Q1], z[Q2], z[J])]
     )

@@ -10,7 +10,7 @@ import pytest
 
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar import residuals as rows
-from synthesis.kinds.motion.sixbar.chain_kernels import O4, Q1, Q2, A, B, J, compute_signed_sine
+from synthesis.kinds.motion.sixbar.dyad_assembly import O4, Q1, Q2, A, B, J, compute_signed_sine
 from synthesis.kinds.motion.sixbar.least_squares import compute_fit_value
 from synthesis.kinds.motion.sixbar.solver import SixbarSearch
 from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES
@@ -26,7 +26,7 @@ def planted(rng: np.random.Generator, make: int) -> tuple[np.ndarray, float, np.
     at, turns = np.empty(6, complex), np.ones(4, complex)
     while True:
         z = rng.normal(size=7) + 1j * rng.normal(size=7)
-        setting = np.zeros(rows.SETTING_SIZE)
+        setting = np.zeros(rows.SETTING.size)
         sides = np.sign([compute_signed_sine(z[A], z[O4], z[B]), compute_signed_sine(z[Q1], z[Q2], z[J])])
         setting[[rows.TOPOLOGY, rows.FIRST_SIDE, rows.SECOND_SIDE]] = make, *sides
         lengths, inverses = np.empty(4), np.empty(4, complex)

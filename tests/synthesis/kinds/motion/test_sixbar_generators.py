@@ -130,9 +130,9 @@ def test_a_curved_valley_is_followed_to_its_end():
     open_ = kernels.IS_USED[kind].copy()
     open_[[kernels.K, kernels.L]] = False
     start[open_] += np.random.default_rng(0).normal(0.0, 0.2, int(open_.sum()))
-    setting = np.zeros(fit.SETTING_SIZE)
+    setting = np.zeros(fit.SETTING.size)
     setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, found.assembly, 1.0, 1.0
-    setting[[fit.COSINE, fit.RATIO]], setting[fit.FREE :] = (2.0, 99.0), open_
+    setting[[fit.COSINE, fit.RATIO]], setting[fit.FREE] = (2.0, 99.0), open_
     ends = []
     for method, more in ((descend, (300, 1e-15)), (follow_valley, (300,))):
         x = start.copy()

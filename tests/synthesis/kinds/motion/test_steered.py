@@ -19,7 +19,8 @@ from synthesis.kinds.motion.constrained.residuals import (
     HOME_PIVOTS,
     HOME_WEIGHT_INDEX,
     LINE,
-    LINKS,
+    MAX_LINK,
+    MIN_LINK,
     RATIO,
     SHORTEST,
     STEPS,
@@ -225,11 +226,11 @@ def test_margins_are_those_of_the_driven_linkage() -> None:
     setting[STEPS:] = np.diff(inputs)
     setting[DIRECTION], setting[SHORTEST], setting[COSINE] = 1.0, 1.0, 0.9
     setting[ASSEMBLY] = math.copysign(1.0, ((at.b[0] - at.a[0]).conjugate() * (at.b[0] - pivots[1])).imag)
-    setting[LINKS], setting[LINKS + 1], setting[RATIO] = 0.5, 3.0, 4.0
+    setting[MIN_LINK], setting[MAX_LINK], setting[RATIO] = 0.5, 3.0, 4.0
     fixed, moving = [0.0, 3.0, -1.0, 1.0], [-np.inf, np.inf, -np.inf, np.inf]
-    setting[BOXES : BOXES + 16] = [*fixed, *fixed, *moving, *moving]
-    setting[GIVEN_COORDINATES : GIVEN_COORDINATES + 8] = setting[LINE : LINE + 3] = np.nan
-    setting[HOME_PIVOTS : HOME_PIVOTS + 8], setting[HOME_WEIGHT_INDEX] = x[:8], 0.3
+    setting[BOXES] = [*fixed, *fixed, *moving, *moving]
+    setting[GIVEN_COORDINATES] = setting[LINE] = np.nan
+    setting[HOME_PIVOTS], setting[HOME_WEIGHT_INDEX] = x[:8], 0.3
     count = count_pose_margins(3)
     margins, residuals = np.empty(count), np.empty(len(x) + FIXED_RESIDUAL_COUNT + count)
     jacobian, multipliers = np.zeros((len(residuals), len(x))), np.zeros(count + 1)

@@ -25,7 +25,7 @@ from synthesis.fit.chart import (
 from synthesis.fit.coupler_curve import place_linkage, place_with_slopes, sweep_curves
 from synthesis.kinds.path.curve.fits import list_cognates
 from synthesis.kinds.path.curve.random_linkages import draw_linkages
-from synthesis.kinds.path.curve.shape_matching import compare_shapes, find_similar, select_most_similar
+from synthesis.kinds.path.curve.shape_matching import compare_shapes, select_most_similar
 from synthesis.kinds.path.residuals.curve_descent import descend
 from synthesis.kinds.path.task.target_curve import SHAPE_POINT_COUNT, sample_equal_steps
 from synthesis.kinds.path.verification.fourbar import verify_path
@@ -151,7 +151,7 @@ def test_a_drawn_curve_is_found_wherever_it_lies(family, mirrored, backward):
     target = np.roll(target, 31) if closed else target
     target = (2.0 - 1.5j) * (target.conj() if mirrored else target) + 3.0 - 7.0j
     steps, _ = sample_equal_steps(target, closed, SHAPE_POINT_COUNT)
-    starts = find_similar(family, steps, closed, 256, 3, seed=5)
+    starts = select_most_similar(compare_shapes(family, steps, closed, 256, seed=5), 3)
     assert starts.unlike[0] < (0.06 if closed else 0.12)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     compute_lengths(family, starts.x[0], lengths, chart)

@@ -6,7 +6,7 @@ import pytest
 from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, compute_lengths
-from synthesis.kinds.path.residuals.curve_descent import UNLIMITED_PIVOTS, descend
+from synthesis.kinds.path.residuals.curve_descent import UNLIMITED_PIVOTS, LinkageLimits, descend
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.support.demands import path_constraints
@@ -147,7 +147,7 @@ def test_descents_put_pivots_where_they_are_asked_for():
     within = UNLIMITED_PIVOTS.copy()
     within[0], within[1] = (0.5, 0.7), (-2.0, -2.0)
     theta = np.linspace(0.0, 3.0, 5)[None]
-    ends = descend(CRANK_ROCKER, start, np.ones(1), theta, points, within=within, iterations=400)
+    ends = descend(CRANK_ROCKER, start, np.ones(1), theta, points, LinkageLimits(within=within), iterations=400)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     compute_lengths(CRANK_ROCKER, ends.x[0], lengths, chart)
     assert ends.cost[0] < 1e-18

@@ -170,9 +170,9 @@ def test_moving_pivots_are_brought_into_their_region(phase):
 def test_margins_of_moving_pivots_have_the_derivatives_of_their_places():
     rng = np.random.default_rng(2)
     setting = np.full(PATH_SETTING_SIZE, np.inf)
-    setting[FAMILY_INDEX], setting[SIGN_INDEX], setting[MOVING : MOVING + 4] = 1.0, -1.0, (-1.0, 2.0, -3.0, 1.5)
-    setting[LINKS] = setting[CHANGE_POINT] = 0.0
-    setting[GIVEN_PIVOTS : GIVEN_PIVOTS + 4] = np.nan
+    setting[FAMILY_INDEX], setting[SIGN_INDEX], setting[MOVING] = 1.0, -1.0, (-1.0, 2.0, -3.0, 1.5)
+    setting[LINKS][0] = setting[CHANGE_POINT] = 0.0
+    setting[GIVEN_PIVOTS] = np.nan
 
     def at(x, angle, turn):
         lengths, slopes, values = np.empty(4), np.empty((4, 4)), np.empty(LIMIT_COUNT)

@@ -151,7 +151,7 @@ def test_derivatives_of_linkages_with_one_closure(family: int, ratio: float, x: 
     setting[:STANCE_SIZE] = 2, 8, 0.0, *LINE
     setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, 1.0, ratio
     setting[LONGEST], setting[JAM_CYCLE] = math.inf, math.tau
-    setting[PIVOT_LIMITS:] = np.tile([-math.inf, math.inf], 4)
+    setting[PIVOT_LIMITS] = np.tile([-math.inf, math.inf], 4)
     at, theta, limits = np.array(x), np.linspace(0.0, 3.0, 12), MARGIN_COUNT + LENGTH_MARGIN_COUNT + PIVOT_MARGIN_COUNT
     lengths = np.zeros(4)
     compute_lengths(family, at, lengths, np.zeros((4, 4)))
