@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 from mechsynth.answers import Result
 from mechsynth.progress import Progress, ProgressCallback, open_progress
@@ -157,7 +158,7 @@ class AsyncClient:
         return _build_result((await self.service.job(job_id)).with_result())
 
 
-def _convert_progress(report_progress: ProgressCallback) -> Any:
+def _convert_progress(report_progress: ProgressCallback) -> Callable[[service.Progress], None]:
     return lambda progress: report_progress(progress.fraction, progress.message)
 
 

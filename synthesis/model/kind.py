@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from synthesis.model.answer import Reachable, Result
+from synthesis.model.json_object import JsonObject
 from synthesis.model.mechanism_types import collect_models, list_mechanism_types
 from synthesis.model.problem import ProblemBase
 
@@ -81,11 +82,11 @@ class TaskEasing(Generic[P]):
     """
 
     ease: Callable[[P, float], P]
-    list_reached: Callable[[P], dict[str, Any]]
+    list_reached: Callable[[P], JsonObject]
     describe_reached: Callable[[Reachable], str]
 
 
-def list_no_problems() -> list[dict[str, Any]]:
+def list_no_problems() -> list[JsonObject]:
     """Return no statements."""
     return []
 
@@ -149,7 +150,7 @@ class Kind(Generic[P, R]):
     ratio_check: RatioCheck | None = None
     easing: TaskEasing[P] | None = None
     is_first_loaded: bool = False
-    list_warm_up_problems: Callable[[], list[dict[str, Any]]] = list_no_problems
+    list_warm_up_problems: Callable[[], list[JsonObject]] = list_no_problems
     columns: TableColumns | None = None
     gallery: tuple[NamedExample, ...] = field(kw_only=True)
 
@@ -169,7 +170,7 @@ class Kind(Generic[P, R]):
         return list(dict.fromkeys(named))
 
     @property
-    def examples(self) -> list[dict[str, Any]]:
+    def examples(self) -> list[JsonObject]:
         """Runnable statements, as a client would post them; the first is the simplest."""
         schema_extra = self.problem.model_config["json_schema_extra"]
         assert isinstance(schema_extra, dict)

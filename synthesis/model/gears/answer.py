@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from fractions import Fraction
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from pydantic import Field
 
@@ -17,6 +17,7 @@ from kinematics.gear.train import OrdinaryTrain, StageKind, TrainStage
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gears.mesh_limits import choose_cutter_teeth
+from synthesis.model.json_object import JsonObject
 
 LIMIT_TOLERANCE = 1e-9
 """Tolerance of a limit of teeth, as a share of the module or the centre distance: rounding of teeth exactly on it."""
@@ -245,11 +246,11 @@ def _describe_standard_mesh(stage: int, driver: int, driven: int, mesh: Mesh, sh
     )
 
 
-def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> dict[str, Any]:
+def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> JsonObject:
     """Return the fields of the mesh that differ from, or are added to, those of external spur gears."""
     if stage.kind == "external":
         return {}
-    told: dict[str, Any] = {"type": stage.kind}
+    told: JsonObject = {"type": stage.kind}
     if stage.kind == "bevel":
         pair = stage.cones(pressure_angle)
         radii, cones, virtual = pair.pitch_radii, pair.cones, pair.virtual_teeth

@@ -10,7 +10,7 @@ import math
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -24,6 +24,7 @@ from synthesis.model.answer import Answer, optional_field
 from synthesis.model.counting import format_count
 from synthesis.model.dimension import ROTATIONAL_SPEED, Length
 from synthesis.model.gears.answer import apply_tool_contact
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import PositiveNumber, Statement
 
 Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
@@ -292,7 +293,7 @@ class Stresses(NamedTuple):
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
-    gears: list[dict[str, Any]]
+    gears: list[JsonObject]
     sharing: float | None = None
 
     def select_safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
@@ -383,7 +384,7 @@ class StressCalculator:
 
     def _build_gear_row(
         self, place: int, form: float | None, size: float | None, bent: float | None, pressed: float | None
-    ) -> dict[str, Any]:
+    ) -> JsonObject:
         bending, contact = self._stated.allowable_bending, self._stated.allowable_contact
         both_ways = self._loaded.both_ways[place]
         share = REVERSED_BENDING_FACTOR if both_ways else 1.0
@@ -504,9 +505,7 @@ def mark_idlers(stage: TrainStage, place: int) -> tuple[bool, bool]:
     return place > 0, place + 2 < len(stage.gears)
 
 
-def describe_strength(
-    loaded: LoadedPair, method: StrengthMethod, face_width: float | None, unit: float
-) -> dict[str, Any]:
+def describe_strength(loaded: LoadedPair, method: StrengthMethod, face_width: float | None, unit: float) -> JsonObject:
     """Describe the strength of a pair by the fields of :class:`PairStrength`; ``unit`` is the length unit in mm."""
     judge = StressCalculator(loaded, method)
     least = judge.find_min_width()

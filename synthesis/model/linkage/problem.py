@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
+from synthesis.model.answer import Answer
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
-from synthesis.model.dynamics.request import DesignDynamics
+from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity
 from synthesis.model.layout import LayoutSpec
 from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import EDGE_TOLERANCE, MovingZone
@@ -27,12 +28,9 @@ from synthesis.model.problem import (
     Statement,
 )
 
-Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
-"""Quantities of a linkage's forces that can be limited (docs/mechanisms/dynamics.md)."""
+FORCE_NAMES: tuple[ForceQuantity, ...] = get_args(ForceQuantity)
 
-FORCE_NAMES: tuple[Force, ...] = get_args(Force)
-
-RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
+RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | ForceQuantity
 """Criteria by which designs of linkages can be ordered (docs/methods/ranking.md)."""
 
 
@@ -140,7 +138,7 @@ class Constraints(Statement):
     )
 
     @property
-    def force_limits(self) -> dict[Force, float]:
+    def force_limits(self) -> dict[ForceQuantity, float]:
         """The given limits on forces."""
         limits = {name: getattr(self, f"max_{name}") for name in FORCE_NAMES}
         return {name: limit for name, limit in limits.items() if limit is not None}
@@ -218,7 +216,7 @@ class LinkageProblem(ProblemBase):
         """Whether P is a dimension of its linkages."""
         return True
 
-    def build_required_targets(self, _design: Any) -> RequiredTargets:
+    def build_required_targets(self, _design: Answer) -> RequiredTargets:
         """Return the requirements on a design at its targets, for kinds that support :attr:`manufacture_task`."""
         raise NotImplementedError(f"{self.kind} has no requirements at targets")
 
