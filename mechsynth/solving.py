@@ -42,9 +42,9 @@ def solve(
     """
     from synthesis.dispatch import solve as solved
 
-    asked = check_problem(problem)
-    with open_progress(progress) as told:
-        return Result(solved(asked, _stop_on_cancel(cancel, told)), asked, label)
+    checked = check_problem(problem)
+    with open_progress(progress) as report_progress:
+        return Result(solved(checked, _stop_on_cancel(cancel, report_progress)), checked, label)
 
 
 def _stop_on_cancel(cancel: threading.Event | None, report_progress: ProgressCallback) -> ProgressCallback:
@@ -106,10 +106,10 @@ class Client:
         ClientError
             ``Unreachable``, ``Refused``, or ``JobFailed`` if the job ended without a result.
         """
-        with open_progress(progress) as told:
+        with open_progress(progress) as report_progress:
             try:
                 job = self.service.solve(
-                    build_statement(problem), label=label, progress=_convert_progress(told), cancel=cancel
+                    build_statement(problem), label=label, progress=_convert_progress(report_progress), cancel=cancel
                 )
             except service.ClientError as error:
                 raise _classify_error(error, cancel) from error
@@ -146,9 +146,11 @@ class AsyncClient:
 
     async def solve(self, problem: Problem, *, label: str | None = None, progress: Progress = False) -> Result:
         """Solve a problem and wait for the answer; raises as :meth:`Client.solve`."""
-        with open_progress(progress) as told:
+        with open_progress(progress) as report_progress:
             try:
-                job = await self.service.solve(build_statement(problem), label=label, progress=_convert_progress(told))
+                job = await self.service.solve(
+                    build_statement(problem), label=label, progress=_convert_progress(report_progress)
+                )
             except service.ClientError as error:
                 raise _classify_error(error, None) from error
         return _build_result(job)
@@ -179,7 +181,9 @@ def _classify_error(error: service.ClientError, cancel: threading.Event | None) 
         if cancel is not None and cancel.is_set() and error.status == 404:
             return Cancelled("the job had already ended when it was cancelled, and was removed")
         if error.status == 422 and error.errors and all(_is_in_problem(path) for path in error.errors):
-            return InvalidProblem({path.removeprefix(_PROBLEM_POINTER): told for path, told in error.errors.items()})
+            return InvalidProblem(
+                {path.removeprefix(_PROBLEM_POINTER): detail for path, detail in error.errors.items()}
+            )
     return error
 
 

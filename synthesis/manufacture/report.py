@@ -74,7 +74,7 @@ def report_manufacture(
         )
     # The block's own seed has precedence, so that a client can repeat or vary the samples alone.
     seeded = seed if block.seed is None else block.seed
-    told = ManufactureReport(
+    report = ManufactureReport(
         seed=seeded if block.is_sampled else None,
         worst_case=_find_worst_case(made, off),
         matter=_select_important(listed),
@@ -83,7 +83,7 @@ def report_manufacture(
         widest=allocated,
         remark=remark,
     )
-    return ManufactureResult(told, sample_yield(made, block, seeded) if block.is_sampled else None)
+    return ManufactureResult(report, sample_yield(made, block, seeded) if block.is_sampled else None)
 
 
 def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensitivities]:

@@ -46,11 +46,11 @@ def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> JsonOb
     # The output turns by 1/ratio of the input: of a ratio that is too small it has turned too far.
     gained = exact / abs(ratio) - 1
     seconds = float(gained * Fraction(SECONDS_PER_DAY))
-    told: JsonObject = {
+    entries: JsonObject = {
         "relative_error": float(abs(ratio) / exact - 1),
         "seconds_per_day": seconds,
         "days_per_second": None if seconds == 0.0 else 1.0 / abs(seconds),
     }
     if sign * ratio < 0:
-        told["opposite"] = True
-    return {"drift": told}
+        entries["opposite"] = True
+    return {"drift": entries}

@@ -104,8 +104,8 @@ def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequ
     ):
         begin = len(loaded)
         if stage.kind == "worm":
-            told = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
-            loaded.append({**next(geometries).model_dump(), **told, "efficiency": efficiencies[0]})
+            worm_mesh = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
+            loaded.append({**next(geometries).model_dump(), **worm_mesh, "efficiency": efficiencies[0]})
             continue
         # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
         # drives: where the output does, a mesh has lost its share before its force reaches the driver.

@@ -97,8 +97,8 @@ def find_element_errors(train: Train, driving: str | None, elements: Sequence[Gi
             and INPUT_NAME in element.clutch
             and INPUT_NAME in train.members
         ):
-            told = "a member is named input: give it another name, or give the mechanism's input"
-            faults.append((f"{path}/clutch", told))
+            detail = "a member is named input: give it another name, or give the mechanism's input"
+            faults.append((f"{path}/clutch", detail))
     return faults
 
 

@@ -157,11 +157,11 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> JsonObject:
     units: list[JsonObject] = []
     known = True
     for unit in request.mechanism.units:
-        told = _analyze_unit(request, unit, back)
-        units.append(told)
+        unit_answer = _analyze_unit(request, unit, back)
+        units.append(unit_answer)
         # Units report input over output speed, but shafts have their speed over the input's: its inverse.
         share /= compute_unit_ratio(unit)
-        passed = told["efficiency"]
+        passed = unit_answer["efficiency"]
         # If the output drives, more power enters there than leaves at the input.
         known = known and passed is not None and not (back and passed == 0.0)
         # Once a unit's efficiency is unknown, so are the torques on all later shafts.
@@ -176,14 +176,14 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> JsonObject:
                 **request.motion.drive_geared(turning, at, speed),
             }
         )
-    efficiencies = [told["efficiency"] for told in units]
+    efficiencies = [unit_answer["efficiency"] for unit_answer in units]
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
         "valid": [True] * len(at),
         "ratio": Ratio.from_fraction(1 / share).model_dump(),
         "efficiency": None if None in efficiencies else math.prod(efficiencies),
-        "self_locking": any(told.get("self_locking") for told in units),
+        "self_locking": any(unit_answer.get("self_locking") for unit_answer in units),
         "shafts": shafts,
         "units": units,
         **describe_drift(1 / share, request.wanted_ratio),

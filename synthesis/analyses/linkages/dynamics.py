@@ -95,8 +95,8 @@ def analyze_forces(
         answer["harmonics"] = describe_harmonics(found, at, closed)
     if course.force_index is not None:
         answer["joint_force_index"] = course.force_index.tolist()
-        answer["max_joint_force_index"], told = _find_largest_index(course, extremes)
-        warnings = warnings + told
+        answer["max_joint_force_index"], index_warnings = _find_largest_index(course, extremes)
+        warnings = warnings + index_warnings
     return answer | {"status": _list_status(course), "checks": _compare_routes(found, check), "warnings": warnings}
 
 

@@ -86,10 +86,10 @@ def analyze_targets(mechanism: GivenMechanism, targets: Sequence[TargetSpec], bl
     if block is None:
         return answer
     used = float(held.inputs.min()), float(held.inputs.max())
-    told = report_manufacture(mechanism, held, block, 0, used)
-    answer["manufacture"] = told.manufactured.model_dump()
-    if told.yield_ is not None:
-        answer["yield"] = told.yield_.model_dump()
+    report = report_manufacture(mechanism, held, block, 0, used)
+    answer["manufacture"] = report.manufactured.model_dump()
+    if report.yield_ is not None:
+        answer["yield"] = report.yield_.model_dump()
     return answer
 
 

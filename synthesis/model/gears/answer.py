@@ -250,11 +250,11 @@ def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -
     """Return the fields of the mesh that differ from, or are added to, those of external spur gears."""
     if stage.kind == "external":
         return {}
-    told: JsonObject = {"type": stage.kind}
+    block: JsonObject = {"type": stage.kind}
     if stage.kind == "bevel":
         pair = stage.cones(pressure_angle)
         radii, cones, virtual = pair.pitch_radii, pair.cones, pair.virtual_teeth
-        return told | {
+        return block | {
             "centre_distance": 0.0,
             "suggested_shift": None,
             "pitch_diameter": GearLengths(driver=2.0 * radii[0], driven=2.0 * radii[1]),
@@ -263,23 +263,23 @@ def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -
             "virtual_teeth": GearNumbers(driver=virtual[0], driven=virtual[1]),
         }
     one, two = stage.cut_gears(pressure_angle)
-    told["pitch_diameter"] = GearLengths(driver=2.0 * one.pitch_radius, driven=2.0 * two.pitch_radius)
+    block["pitch_diameter"] = GearLengths(driver=2.0 * one.pitch_radius, driven=2.0 * two.pitch_radius)
     if stage.kind == "internal":
-        told["addendum"] = GearNumbers(driver=one.addendum, driven=two.addendum)
-        told["interferes"] = mesh.interferes or is_fillet_reached(mesh)
-        told["ring_trimmed"] = shape_ring(mesh).is_trimmed
-        return told
+        block["addendum"] = GearNumbers(driver=one.addendum, driven=two.addendum)
+        block["interferes"] = mesh.interferes or is_fillet_reached(mesh)
+        block["ring_trimmed"] = shape_ring(mesh).is_trimmed
+        return block
     gear = HelicalGear(stage.driver, stage.module, stage.helix_angle, pressure_angle)
     angle, shrunk = round(math.degrees(stage.helix_angle), SHOWN_DECIMALS), math.cos(stage.helix_angle) ** 3
-    told |= {
+    block |= {
         "helix_angle": GearAngles(driver=angle, driven=-angle),
         "transverse_module": gear.transverse_module,
         "virtual_teeth": GearNumbers(driver=stage.driver / shrunk, driven=stage.driven / shrunk),
     }
     if stage.face_width is not None:
         overlap = stage.face_width / gear.axial_pitch
-        told |= {"overlap_ratio": overlap, "total_contact_ratio": mesh.contact_ratio + overlap}
-    return told
+        block |= {"overlap_ratio": overlap, "total_contact_ratio": mesh.contact_ratio + overlap}
+    return block
 
 
 def _describe_worm_mesh(number: int, stage: TrainStage, pressure_angle: float) -> MeshGeometry:

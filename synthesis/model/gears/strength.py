@@ -388,10 +388,10 @@ class StressCalculator:
         bending, contact = self._stated.allowable_bending, self._stated.allowable_contact
         both_ways = self._loaded.both_ways[place]
         share = REVERSED_BENDING_FACTOR if both_ways else 1.0
-        told = {"bent_both_ways": True} if both_ways else {}
+        remarks = {"bent_both_ways": True} if both_ways else {}
         gear = (self._loaded.contact.mesh.pinion, self._loaded.contact.mesh.gear)[place]
         if bent is None and gear.internal and self._loaded.spares_rings:
-            told["bending_judged"] = False
+            remarks["bending_judged"] = False
         return {
             "form": form,
             "size_factor": size,
@@ -400,7 +400,7 @@ class StressCalculator:
             "contact_stress": pressed,
             "bending_safety": share * bending[place] / bent if bending and bent is not None else None,
             "contact_safety": contact[place] / pressed if contact and pressed is not None else None,
-            **told,
+            **remarks,
         }
 
     @cached_property
@@ -480,10 +480,10 @@ def describe_power_rejections(failed: int) -> str:
 def describe_too_weak(required: CarriedPower, failed: int, every: bool, strongest: float) -> str:
     """Describe that no train carries the power; ``strongest`` is the power of the strongest, W, or 0 if unknown."""
     which = f"the {failed} possible trains" if every else f"the best {failed} trains"
-    told = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
+    sentence = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
     if strongest:
-        told += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
-    return told if every else f"{told} Further trains were not checked."
+        sentence += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
+    return sentence if every else f"{sentence} Further trains were not checked."
 
 
 def build_stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:
