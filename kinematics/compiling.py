@@ -12,7 +12,7 @@ from functools import cache
 from hashlib import sha256
 from inspect import isfunction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numba
 import numba.core.config
@@ -24,6 +24,16 @@ from numba.core.caching import (
 )
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+
+
+class KernelOptions(TypedDict, total=False):
+    """Options of `njit` that several kernels share."""
+
+    cache: bool
+    nogil: bool
+    error_model: Literal["python", "numpy"]
+    forceinline: bool
+
 
 _PROJECT_MODULES = rb"(?:kinematics|synthesis)[\w.]*"
 _IMPORT_PATTERN = re.compile(
@@ -99,11 +109,11 @@ class CheckoutLocator(SourceFolderLocator):
     """Locator of `__pycache__` in a checkout of the project; installed packages are left untouched."""
 
     @classmethod
-    def from_function(cls, py_func: Any, py_file: str) -> Any:
+    def from_function(cls, py_func: Callable[..., object], py_file: str) -> object:
         """Return the locator for a kernel (the hook that numba calls), or None outside a checkout."""
         in_checkout = (_find_root(Path(py_file).resolve()) / "pyproject.toml").exists()
-        beside: Any = super()  # numba annotates nothing
-        return beside.from_function(py_func, py_file) if in_checkout else None
+        locator: Any = super()  # numba annotates nothing
+        return locator.from_function(py_func, py_file) if in_checkout else None
 
 
 class UserFolderLocator(_SourceStampMixin, UserWideCacheLocator):
@@ -122,7 +132,7 @@ _CacheFile: Any = IndexDataCacheFile
 class _UpgradableCacheFile(_CacheFile):
     """Index of compiled kernels that counts as empty if an earlier version wrote types that no longer exist."""
 
-    def _load_index(self) -> Any:
+    def _load_index(self) -> object:
         # numba unpickles the argument types of all entries before it compares the stamp of the sources, so a renamed
         # class would end the process after an upgrade in place instead of compiling the kernel again.
         try:
@@ -131,13 +141,13 @@ class _UpgradableCacheFile(_CacheFile):
             return {}
 
 
-_Dispatcher: Any = CPUDispatcher
+_Dispatcher: Any = CPUDispatcher  # the stubs of numba omit what is overridden here
 
 
 class _LazyKernel(_Dispatcher):
     """A kernel of one declared signature that is compiled at its first use instead of at import."""
 
-    declared: Any = None
+    declared: object = None
     """The declared signature until it has been compiled, then None."""
 
     def _settle(self) -> None:
@@ -150,31 +160,31 @@ class _LazyKernel(_Dispatcher):
                     self.disable_compile()
                     self.declared = None
 
-    def _compile_for_args(self, *args: Any, **named: Any) -> Any:
+    def _compile_for_args(self, *args: object, **named: object) -> object:
         # The C dispatcher calls this when it finds no compiled signature for the arguments.
         if self.declared is None:
             return super()._compile_for_args(*args, **named)
         self._settle()
         return self
 
-    def get_call_template(self, args: Any, kws: Any) -> Any:
+    def get_call_template(self, args: object, kws: object) -> object:
         self._settle()
         return super().get_call_template(args, kws)
 
-    def get_function_type(self) -> Any:
+    def get_function_type(self) -> object:
         self._settle()
         return super().get_function_type()
 
-    def get_compile_result(self, sig: Any) -> Any:
+    def get_compile_result(self, sig: object) -> object:
         self._settle()
         return super().get_compile_result(sig)
 
-    def _reduce_states(self) -> Any:
+    def _reduce_states(self) -> object:
         self._settle()
         return super()._reduce_states()
 
 
-def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., object]], object]:
     """Wrap `numba.njit`: check its cache against all sources of the kernel and set every option explicitly.
 
     An option that a callee leaves open is inherited from the kernel it is first compiled for, so results would differ
@@ -188,7 +198,7 @@ def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
     declared = None if not signature or isfunction(signature[0]) else signature[0]
     compile_kernel = numba.njit(*(signature if declared is None else ()), **options)
 
-    def decorate(function: Callable[..., Any]) -> Any:
+    def decorate(function: Callable[..., object]) -> object:
         config: Any = numba.core.config
         before = config.CACHE_LOCATOR_CLASSES
         config.CACHE_LOCATOR_CLASSES = _LOCATORS

@@ -156,7 +156,7 @@ class Result:
         self.designs = [Design(design, problem, label, n) for n, design in enumerate(model.designs)]
 
     @classmethod
-    def from_json(cls, problem: Mapping[str, Any], result: Mapping[str, Any], label: str | None = None) -> Result:
+    def from_json(cls, problem: Mapping[str, object], result: Mapping[str, object], label: str | None = None) -> Result:
         """Build the result from the problem and result of a job in JSON.
 
         Raises
@@ -164,7 +164,7 @@ class Result:
         pydantic.ValidationError
             If the service has another version with other fields.
         """
-        kind = KINDS[problem["kind"]]
+        kind = KINDS[str(problem["kind"])]
         model = kind.result.model_validate_json(json.dumps(result))
         return cls(model, kind.problem.model_validate_json(json.dumps(problem)), label)
 
@@ -210,7 +210,7 @@ class Result:
         return f"<div><p>{escape(self.summary)}</p>{table}{best}</div>"
 
 
-def _iterate_metrics(designs: Sequence[Design]) -> Iterator[tuple[str, Any]]:
+def _iterate_metrics(designs: Sequence[Design]) -> Iterator[tuple[str, object]]:
     """Yield the metrics of the best design."""
     for design in designs[:1]:
         yield from ((name, getattr(design.metrics, name)) for name in type(design.metrics).model_fields)
@@ -222,7 +222,7 @@ def _format_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _format_value(value: Any) -> str:
+def _format_value(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

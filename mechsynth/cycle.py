@@ -45,7 +45,7 @@ class Cycle:
     answer: Mapping[str, Any]
 
     @classmethod
-    def from_lists(cls, listed: Mapping[str, Any]) -> Self:
+    def from_lists(cls, listed: Mapping[str, object]) -> Self:
         """Build a cycle from an answer with plain lists."""
         answer = {name: _convert_arrays(value) for name, value in listed.items()}
         at = answer["input_angle"]
@@ -65,7 +65,7 @@ class Cycle:
         return len(self.input_angle)
 
 
-def _convert_arrays(value: Any) -> Any:
+def _convert_arrays(value: object) -> Any:
     if isinstance(value, dict):
         return {name: _convert_arrays(inner) for name, inner in value.items()}
     if not isinstance(value, list) or not value:

@@ -6,7 +6,7 @@ import importlib
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Protocol
 
 ProgressCallback = Callable[[float, str], None]
 """Callback with the completed share, from 0 to 1, and the present step."""
@@ -40,7 +40,17 @@ def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
             yield lambda fraction, message: _move_bar(bar, fraction, message)
 
 
-def _move_bar(bar: Any, fraction: float, message: str) -> None:
+class _Bar(Protocol):
+    """A bar of tqdm."""
+
+    n: float
+
+    def set_description(self, desc: str, refresh: bool) -> None: ...
+
+    def update(self, n: float) -> object: ...
+
+
+def _move_bar(bar: _Bar, fraction: float, message: str) -> None:
     bar.set_description(message, refresh=False)
     # Progress of a solver may step back, bars may not.
     bar.update(max(0.0, round(100.0 * fraction) - bar.n))

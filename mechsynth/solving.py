@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 from mechsynth.answers import Result
 from mechsynth.progress import Progress, ProgressCallback, open_progress
@@ -43,8 +44,8 @@ def solve(
     from synthesis.dispatch import solve as solved
 
     checked = check_problem(problem)
-    with open_progress(progress) as report:
-        return Result(solved(checked, _stop_on_cancel(cancel, report)), checked, label)
+    with open_progress(progress) as report_progress:
+        return Result(solved(checked, _stop_on_cancel(cancel, report_progress)), checked, label)
 
 
 def _stop_on_cancel(cancel: threading.Event | None, report_progress: ProgressCallback) -> ProgressCallback:
@@ -107,10 +108,10 @@ class Client:
         ClientError
             ``Unreachable``, ``Refused``, or ``JobFailed`` if the job ended without a result.
         """
-        with open_progress(progress) as report:
+        with open_progress(progress) as report_progress:
             try:
                 job = self.service.solve(
-                    build_statement(problem), label=label, progress=_convert_progress(report), cancel=cancel
+                    build_statement(problem), label=label, progress=_convert_progress(report_progress), cancel=cancel
                 )
             except service.ClientError as error:
                 raise _classify_error(error, cancel) from error
@@ -147,10 +148,10 @@ class AsyncClient:
 
     async def solve(self, problem: Problem, *, label: str | None = None, progress: Progress = False) -> Result:
         """Solve a problem and wait for the answer; raises as :meth:`Client.solve`."""
-        with open_progress(progress) as report:
+        with open_progress(progress) as report_progress:
             try:
                 job = await self.service.solve(
-                    build_statement(problem), label=label, progress=_convert_progress(report)
+                    build_statement(problem), label=label, progress=_convert_progress(report_progress)
                 )
             except service.ClientError as error:
                 raise _classify_error(error, None) from error
@@ -161,7 +162,7 @@ class AsyncClient:
         return _build_result((await self.service.job(job_id)).with_result())
 
 
-def _convert_progress(report_progress: ProgressCallback) -> Any:
+def _convert_progress(report_progress: ProgressCallback) -> Callable[[service.Progress], None]:
     return lambda progress: report_progress(progress.fraction, progress.message)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import cast
 
 from service.requests import Faults, check_consistency, check_fields
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 
-Problem = ProblemBase | Mapping[str, Any]
+Problem = ProblemBase | Mapping[str, object]
 """A problem: one of the classes of :mod:`mechsynth.kinds`, or the JSON object that a client would post."""
 
 
@@ -25,7 +26,7 @@ class InvalidProblem(ValueError):
         super().__init__("\n".join(f"{path or '/'}: {detail}" for path, detail in self.errors.items()))
 
 
-def build_statement(problem: Problem) -> dict[str, Any]:
+def build_statement(problem: Problem) -> JsonObject:
     """Return a problem as a JSON object."""
     if isinstance(problem, ProblemBase):
         # `kind` is a default of its class and would be left out with the other unset fields.

@@ -19,7 +19,7 @@ from synthesis.kinds.path.exact import five_point_system as five
 from synthesis.kinds.path.exact import nine_point_system as nine
 from synthesis.kinds.path.exact.continuation_starts import StoredStart
 from synthesis.kinds.path.exact.nine_point_system import is_linkage
-from synthesis.numerics.continuation import END_REACHED, follow
+from synthesis.numerics.continuation import END_REACHED, ParameterPath, follow
 from tools.monodromy import all_solutions
 
 NINE_SEED, FIVE_SEED = 9, 5
@@ -57,13 +57,9 @@ def solve_nine_points(rng: np.random.Generator) -> StoredStart:
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
-            nine.evaluate_nine_point_system,
-            nine.SCALE_GROUPS,
-            nine.SCRATCH_SIZE,
+            nine.NINE_POINT_SYSTEM,
             y,
-            here,
-            there,
-            straight,
+            ParameterPath(here, there, straight),
             tolerance=FOLLOWING_TOLERANCE,
             threads=THREADS,
         )
@@ -99,13 +95,9 @@ def solve_five_points(rng: np.random.Generator) -> StoredStart:
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
-            five.evaluate_five_point_system,
-            five.SCALE_GROUPS,
-            five.SCRATCH_SIZE,
+            five.FIVE_POINT_SYSTEM,
             y,
-            here,
-            there,
-            straight,
+            ParameterPath(here, there, straight),
             tolerance=FOLLOWING_TOLERANCE,
         )
         return np.asarray(ends.y[ends.status == END_REACHED])

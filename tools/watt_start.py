@@ -16,16 +16,14 @@ import numpy as np
 
 from kinematics.arrays import Complex
 from synthesis.kinds.function.nine_pairs.system import (
+    NINE_PAIR_SYSTEM,
     PARAMETER_COUNT,
-    SCALE_GROUPS,
-    SCRATCH_SIZE,
     SOLUTION_COUNT,
     UNKNOWN_COUNT,
     compute_residuals,
     is_linkage,
-    nine_pair_system,
 )
-from synthesis.numerics.continuation import END_REACHED, follow
+from synthesis.numerics.continuation import END_REACHED, ParameterPath, follow
 from tools.monodromy import all_solutions
 
 SEED = 9
@@ -82,13 +80,9 @@ def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
     def followed(y: Complex, here: Complex, there: Complex) -> Complex:
         ends = follow(
-            nine_pair_system,
-            SCALE_GROUPS,
-            SCRATCH_SIZE,
+            NINE_PAIR_SYSTEM,
             y,
-            here,
-            there,
-            straight,
+            ParameterPath(here, there, straight),
             tolerance=FOLLOWING_TOLERANCE,
             threads=THREADS,
         )

@@ -15,10 +15,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from kinematics.arrays import Complex, Real
 from kinematics.cam.follower import TranslatingFlat, TranslatingRoller
@@ -87,17 +87,18 @@ class SpecifiedContour:
 
     def points(self, count: int) -> Complex:
         """Return about ``count`` points along the contour, every joint included."""
-        found: list[NDArray[Any]] = []
+        sections: list[Complex] = []
         lengths = [abs(self._compute_length(k)) for k in range(len(self.parts))]
         for k, part in enumerate(self.parts):
             number = max(2, round(count * lengths[k] / sum(lengths)))
             share = np.arange(number) / number
             if isinstance(part, Arc):
                 angle = part.start + share * self._compute_turn(k)
-                found.append(part.centre + part.radius * np.exp(1j * angle))
+                sections.append(np.asarray(part.centre + part.radius * np.exp(1j * angle), np.complex128))
             else:
-                found.append(self._find_end(k - 1) + share * (self._find_end(k) - self._find_end(k - 1)))
-        return np.concatenate(found)
+                start, end = self._find_end(k - 1), self._find_end(k)
+                sections.append(np.asarray(start + share * (end - start), np.complex128))
+        return np.concatenate(sections)
 
     def breaks(self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation = "ccw") -> Real:
         """Return the cam angles between which the follower stays on one part, ascending from 0 to 2π."""

@@ -25,13 +25,12 @@ the end.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Integers, Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 from kinematics.linkage.planar.drive_kernels import GEAR, JOINT, KIND, LINK, OTHER_LINK, OTHER_PIN, PIN, RRP, RRR, SLIDE
 
 MIN_SINE = 1e-7
@@ -47,10 +46,10 @@ MAX_LANES = 64
 """Maximum number of inputs processed side by side by vector instructions; their data must fit into the first-level
 cache."""
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of the kernels: division by zero gives inf or NaN as in NumPy."""
 
-INLINE_OPTIONS: dict[str, Any] = OPTIONS | {"forceinline": True}
+INLINE_OPTIONS: KernelOptions = {**OPTIONS, "forceinline": True}
 """Options of a kernel that is called in one place and inlined there."""
 
 

@@ -8,12 +8,12 @@ the opposite order.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.arrays import Complex, Integers, Real
+from kinematics.arrays import Complex, Integers, Numbers, Real
 from kinematics.dynamics import dyad_kernels as kernels
 from kinematics.dynamics.loads import JointForce, PointForce, Torque
 from kinematics.dynamics.machine import Machine
@@ -115,6 +115,7 @@ def compute_dyad_forces(
         moved *= machine.scale
         input_jet *= machine.scale
     put = _KernelInput(machine, make)
+    slide_points, slide_normals = put.lines()
     mass, cg, inertia = put.bodies()
     loads = put.loads(input_jet)
     out = np.empty((5, *moved.shape[1:]))
@@ -126,7 +127,8 @@ def compute_dyad_forces(
         _find_moved_joints(machine, make, loads.on),
         program.code.driver,
         put.joints,
-        *put.lines(),
+        slide_points,
+        slide_normals,
         np.stack([put.broadcast_value(sign) for sign in program.signs])
         if program.signs
         else np.empty((0, len(mass)), np.int64),
@@ -170,7 +172,7 @@ class _KernelInput:
         placed = [self.from_origin(machine.scale * place) for place in joints.values()]
         self.joints = np.stack([*placed, np.zeros(self.designs, np.complex128)], axis=1)
 
-    def broadcast_value(self, value: ArrayLike) -> NDArray[Any]:
+    def broadcast_value(self, value: ArrayLike) -> Numbers:
         """Broadcast a value to every design, shape (D,)."""
         return np.broadcast_to(np.asarray(value), self.machine.mechanism.shape).ravel()
 

@@ -95,7 +95,8 @@ def compute_peaks(linkages: Fourbars, weights: Weights, speed: float, positions:
         Columns in the order of :data:`DRIVE` and following; infinite if a position cannot be assembled or is a toggle.
     """
     out = np.empty((len(linkages.a), 1, 5))
-    fill_peaks(*linkages, *weights, speed, positions, out)
+    arguments = (*linkages, *weights, speed, positions, out)
+    fill_peaks(*arguments)
     return out[:, 0]
 
 

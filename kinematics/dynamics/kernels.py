@@ -7,13 +7,11 @@ the inverse itself. Lengths are shares of the mechanism's size, so that forces a
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Integers, Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 
 FORCE, DIRECTED_FORCE, TORQUE = range(3)
 """Kinds of terms: a force at a joint (two columns, its components); a force along a given direction; a couple."""
@@ -21,7 +19,7 @@ FORCE, DIRECTED_FORCE, TORQUE = range(3)
 MAX_ESTIMATE_STEPS = 5
 """Maximum number of steps of Hager's estimate; it usually ends after two or three."""
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of the kernels."""
 
 

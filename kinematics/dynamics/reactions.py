@@ -8,13 +8,14 @@ which finds the drive and the shaking force by work and momentum.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from kinematics.arrays import Complex, Mask, Real
+from kinematics.arrays import Complex, Mask, Real, Scalar
 from kinematics.dynamics import kernels, redundancy
-from kinematics.dynamics.friction import Rubbing, build_wrenches, compute_factors, is_still, list_contacts
+from kinematics.dynamics.friction import Contact, Rubbing, build_wrenches, compute_factors, is_still, list_contacts
 from kinematics.dynamics.friction_kernels import solve_friction
 from kinematics.dynamics.loads import Effort
 from kinematics.dynamics.machine import Machine
@@ -84,6 +85,33 @@ def collect_efforts(machine: Machine, now: Places) -> list[Effort]:
     return efforts
 
 
+class _EquationRows(NamedTuple):
+    """The equations of M positions, one after the other, and where their solutions are written."""
+
+    joints: Complex
+    directions: Complex
+    known: Real
+    posed: Mask
+    solutions: Real
+    conditions: Real
+
+
+def _solve_with_friction(
+    now: Places, system: System, contacts: tuple[Contact, ...], rows: _EquationRows
+) -> tuple[Real, Mask]:
+    """Solve with friction at the contacts; return their friction, shape (contacts, M), and where the machine jams."""
+    shape, size = now.smooth.shape, now.size
+    columns = np.array([contact.columns for contact in contacts], np.int64)
+    factors = np.stack([np.broadcast_to(compute_factors(c, now, size), shape) for c in contacts])
+    factors = factors.reshape(len(contacts), -1)
+    terms, coefficients = build_wrenches(contacts, now.mechanism, system, len(now.mechanism.slides) + 1)
+    frictions, jammed = np.empty(factors.shape), np.zeros(len(rows.known), np.bool_)
+    equations = system.terms, system.coefficients, system.bases
+    arguments = (*equations, terms, coefficients, columns, factors, *rows, frictions, jammed)
+    solve_friction(*arguments)
+    return frictions, jammed
+
+
 def _solve_machine(machine: Machine, now: Places, system: System, known: Real) -> tuple[_Solution, list[Real]]:
     """Solve the equations of all positions.
 
@@ -108,25 +136,18 @@ def _solve_machine(machine: Machine, now: Places, system: System, known: Real) -
     posed = now.smooth.ravel() & determined
     jammed, stick = np.zeros(len(known), np.bool_), np.zeros(shape, np.bool_)
     frictions = np.empty((0, len(known)))
-    equations = system.terms, system.coefficients, system.bases
-    state = joints, directions, known, posed, solutions, conditions
+    rows = _EquationRows(joints, directions, known, posed, solutions, conditions)
     contacts = list_contacts(mechanism, system, machine.friction)
     open_forces: list[Real] = []
     if machine.mechanism.redundant:
         if contacts:
             raise TopologyError("friction is not determined with redundant constraints")
-        open_forces = redundancy.solve_minimum_norm(*equations, joints, directions, known, posed, solutions, conditions)
+        open_forces = redundancy.solve_minimum_norm(system, *rows)
     elif contacts:
-        columns = np.array([contact.columns for contact in contacts], np.int64)
-        factors = np.stack([np.broadcast_to(compute_factors(c, now, size), shape) for c in contacts]).reshape(
-            len(contacts), -1
-        )
         stick = np.logical_or.reduce([np.broadcast_to(is_still(c, now), shape) for c in contacts])
-        frictions = np.empty(factors.shape)
-        wrench = build_wrenches(contacts, mechanism, system, slides + 1)
-        solve_friction(*equations, *wrench, columns, factors, *state, frictions, jammed)
+        frictions, jammed = _solve_with_friction(now, system, contacts, rows)
     else:
-        kernels.solve_positions(*equations, *state)
+        kernels.solve_positions(system.terms, system.coefficients, system.bases, *rows)
     # "not <" also marks NaN and infinite condition numbers.
     singular = ~(conditions < MAX_CONDITION)
     solutions[singular], frictions[:, singular], jammed[singular] = np.nan, np.nan, False
@@ -184,7 +205,7 @@ def _mask_indeterminate(found: Reactions, stresses: list[Reactions], size: Real,
     """Mark the forces that are not unique and, unless ``keep``, replace them by NaN."""
     indeterminate = np.zeros(found.solved.shape, np.bool_)
 
-    def mask_force(force: Any, parts: list[Any]) -> Any:
+    def mask_force(force: NDArray[Scalar], parts: list[NDArray[Scalar]]) -> NDArray[Scalar]:
         unique = redundancy.is_unique(force, parts)
         np.logical_or(indeterminate, ~unique, out=indeterminate)
         return force if keep else np.where(unique, force, UNKNOWN_FORCE if np.iscomplexobj(force) else np.nan)

@@ -8,11 +8,14 @@ A force to which no self-stress contributes is unique.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.dynamics import kernels
+from kinematics.dynamics.system import System
 
 MIN_STRESS_PART = 1e-9
 """Component in a self-stress of unit length above which a force is not unique; smaller ones are rounding."""
@@ -22,9 +25,7 @@ MIN_SINGULAR_VALUE = 1e-14
 
 
 def solve_minimum_norm(
-    terms: NDArray[np.int64],
-    coefficients: Real,
-    bases: NDArray[np.int64],
+    system: System,
     joints: Complex,
     directions: Complex,
     known: Real,
@@ -32,7 +33,7 @@ def solve_minimum_norm(
     solutions: Real,
     conditions: Real,
 ) -> list[Real]:
-    """Fill in the solutions of minimum sum of squares; parameters as for :func:`kernels.solve`.
+    """Fill in the solutions of minimum sum of squares; parameters as for :func:`kernels.solve_positions`.
 
     Returns
     -------
@@ -47,9 +48,9 @@ def solve_minimum_norm(
     at = np.flatnonzero(posed)
     matrices = np.zeros((len(at), rows, columns))
     kernels.fill_matrices(
-        terms,
-        coefficients,
-        bases,
+        system.terms,
+        system.coefficients,
+        system.bases,
         np.ascontiguousarray(joints[:, at]),
         np.ascontiguousarray(directions[:, at]),
         matrices,
@@ -67,7 +68,7 @@ def solve_minimum_norm(
     return stresses
 
 
-def is_unique(force: NDArray[np.inexact], stresses: list[NDArray[np.inexact]]) -> NDArray[np.bool_]:
+def is_unique(force: NDArray[np.generic], stresses: Sequence[NDArray[np.generic]]) -> NDArray[np.bool_]:
     """Return where no self-stress contributes to a force."""
     parts = np.array([np.abs(stress) for stress in stresses])
     return np.asarray(np.isnan(np.abs(force)) | (parts < MIN_STRESS_PART).all(axis=0))

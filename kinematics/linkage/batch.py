@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from types import ModuleType
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.arrays import Complex, Mask, Real
+from kinematics.arrays import Complex, Mask, Real, Scalar
 from kinematics.errors import DimensionError, ShapeError
 
 Shape = tuple[int, ...]
@@ -31,15 +31,15 @@ def broadcast_shape(**shapes: Shape) -> Shape:
         raise ShapeError(**shapes) from None
 
 
-def require(name: str, expected: str, value: NDArray[Any], good: Mask | np.bool_) -> None:
+def require(name: str, expected: str, value: NDArray[np.generic], good: Mask | np.bool_) -> None:
     """Raise an error that names the field and its first bad value, unless all values are good."""
     if not np.all(good):
         raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item())
 
 
-def build_block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray[Any]:
+def build_block(rows: tuple[NDArray[Scalar], ...], designs: Shape) -> NDArray[Scalar]:
     """Build a read-only copy of fields of a linkage, broadcast to one shape, as rows of one array."""
-    whole = np.empty((len(rows), *designs), dtype)
+    whole = np.empty((len(rows), *designs), rows[0].dtype)
     for row, field in enumerate(rows):
         whole[row] = field
     # Views of the block are shared, and must not be modified.
@@ -69,7 +69,7 @@ class DesignBatch:
         else:
             named = zip(self._FIELDS, (p, q, r, a, b, c), strict=True)
             designs = broadcast_shape(**{name: field.shape for name, field in named})
-        at, long = build_block((p, q, r), designs, np.complex128), build_block((a, b, c), designs, np.float64)
+        at, long = build_block((p, q, r), designs), build_block((a, b, c), designs)
         # Written out, because a loop over the six fields would take a tenth of the constructor's time.
         point_1, point_2, point_3, length_1, length_2, length_3 = self._FIELDS
         attributes = self.__dict__
@@ -84,7 +84,7 @@ class DesignBatch:
         blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
         return blocks
 
-    def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), tuple(self.__dict__[field] for field in self.__annotations__)
 
 
@@ -142,7 +142,7 @@ def build_sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: 
         shape = broadcast_shape(found=found, shape=shape) if shape else found
     batch = shape[:-1]
     if designs not in (batch, ()):
-        pivots, lengths = (build_block(tuple(rows), batch, rows.dtype) for rows in (pivots, lengths))
+        pivots, lengths = (build_block(tuple(rows), batch) for rows in (pivots, lengths))
     # A single sign is not repeated; the kernels use it for every design.
     signs = np.empty(1 if sign.size == 1 else batch)
     signs[...] = sign.reshape(1) if sign.size == 1 else sign
@@ -220,16 +220,16 @@ def _split_fields(valid: Mask, points: Complex, angles: Real) -> Fields:
 
 def broadcast_over_designs(
     blocks: tuple[Complex, Real], shape: Shape, *values: ArrayLike
-) -> tuple[Complex, Real, *tuple[Real, ...]]:
-    """Put designs and values in rows: blocks of shape (3, D) or (3, 1), values of shape (M,) for M designs."""
+) -> tuple[Complex, Real, Real]:
+    """Put designs and values in rows: blocks of shape (3, D) or (3, 1), values of shape (values, M) for M designs."""
     designs = blocks[1].shape[1:]
     pivots, lengths = blocks
     if designs not in (shape, ()):
-        pivots, lengths = (build_block(tuple(rows), shape, rows.dtype) for rows in blocks)
+        pivots, lengths = (build_block(tuple(rows), shape) for rows in blocks)
     rows = np.empty((len(values), *shape))
     for row, value in enumerate(values):
         rows[row] = value
-    return pivots.reshape(3, -1), lengths.reshape(3, -1), *rows.reshape(len(values), math.prod(shape))
+    return pivots.reshape(3, -1), lengths.reshape(3, -1), rows.reshape(len(values), math.prod(shape))
 
 
 def flatten_shape(shape: Shape) -> tuple[int, int]:

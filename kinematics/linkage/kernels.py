@@ -22,14 +22,13 @@ numbers of the links, 2 input, 3 coupler, 4 output.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from kinematics.arrays import Complex, Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of every kernel: cached on disk, without the interpreter's lock, division by zero as in NumPy."""
 
 TOGGLE_SLACK = 16 * float(np.finfo(np.float64).eps)

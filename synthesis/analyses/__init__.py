@@ -6,8 +6,6 @@ a request refer to the fields of its family.
 
 from __future__ import annotations
 
-from typing import Any
-
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cams import barrel_cam, cam, camshaft, contour_cam
 from synthesis.analyses.gears import gear_pair, gear_train, gearbox, planetary_train, running_pair, train_series
@@ -43,7 +41,7 @@ FAMILIES: dict[str, Family] = {
 """Families by mechanism type, without linkages; every type that is not listed is a linkage."""
 
 
-def get_family(mechanism: Any) -> Family:
+def get_family(mechanism: object) -> Family:
     """Return the family of a mechanism in JSON form; that of linkages if it is unclear."""
     kind = mechanism.get("type") if isinstance(mechanism, dict) else None
     # Even invalid requests need a family, whose model then reports the error.
@@ -55,7 +53,7 @@ def list_families() -> list[Family]:
     return list(dict.fromkeys([linkage.FAMILY, *FAMILIES.values()]))
 
 
-def parse_request(body: Any) -> AnalysisRequest:
+def parse_request(body: object) -> AnalysisRequest:
     """Parse a request from the body of a call.
 
     Raises

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, Generic, NamedTuple, Self, TypeVar
+from typing import Generic, NamedTuple, Self, TypeVar
 
 from pydantic import Field
 
 from synthesis.analyses.input_motion import StatedMotion, Sweep
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
 
 
@@ -20,7 +21,7 @@ class AnalysisRequest(Statement, ABC):
         return []
 
     @abstractmethod
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer to a valid request, as plain lists and numbers in the form of the family's model.
 
         Raises
@@ -30,7 +31,7 @@ class AnalysisRequest(Statement, ABC):
         """
 
     @classmethod
-    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
         """Build the answer for a design's mechanism (in JSON form) over its cycle, a full turn of the input at speed
         1."""
         return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).build_answer()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
@@ -63,7 +63,7 @@ class TimedRun(DriveSpeed):
         return np.asarray(self.at + moved), np.asarray(self.rate + self.acceleration * t), t
 
 
-def _tag_motion(statement: Any) -> str:
+def _tag_motion(statement: object) -> str:
     # The discriminator sees raw JSON or a validated model; their fields distinguish them.
     stated = statement if isinstance(statement, dict) else getattr(type(statement), "model_fields", {})
     if "time" in stated:

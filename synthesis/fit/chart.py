@@ -25,12 +25,11 @@ the remaining two links P and Q: the fourbar is Grashof for all positive s, and 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from kinematics.arrays import Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 
-OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiler options of the fits' kernels: division by zero raises no exception, since results are checked for NaN."""
 
 DOUBLE_CRANK, CRANK_ROCKER, DOUBLE_ROCKER, FOURBAR, SLIDER_CRANK, SLIDER_ROCKER, GEARED_FIVEBAR = range(7)

@@ -3,54 +3,80 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Real
 from synthesis.fit.workspace import AIM_SHARE
 from synthesis.numerics.augmented_lagrangian import VIOLATION_TOLERANCE, descend_constrained
+from synthesis.numerics.levenberg import Rows
 from synthesis.numerics.status import Status
 
 WORKSPACE_TOLERANCE = 0.5 * AIM_SHARE
 """Violation of a workspace, in task sizes, that counts as none, because fits aim beyond the checked limits."""
 
 
+class RowCounts(NamedTuple):
+    """Numbers of rows of a fit.
+
+    Attributes
+    ----------
+    most : int
+        Maximum number of all rows.
+    limits, equations : int
+        Number of limits, and how many of them, the last, are equations.
+    in_workspace : int
+        Number of the limits, the first ones, that are margins of a workspace.
+    """
+
+    most: int
+    limits: int
+    equations: int
+    in_workspace: int
+
+
+class Schedule(NamedTuple):
+    """Initial weight of the limits, and maximum number of descents and of steps of each."""
+
+    weight: float
+    rounds: int
+    steps: int
+
+
 def fit_constrained(
-    rows: Any,
+    rows: Rows,
     x: Real,
     points: Real,
     setting: Real,
     state: Real,
-    *,
-    most: int,
-    in_workspace: int,
-    limits: int,
-    equations: int,
-    weight: float,
-    rounds: int,
-    steps: int,
+    counts: RowCounts,
+    schedule: Schedule,
 ) -> tuple[Status, float]:
     """Descend in place to a minimum at which all constraints hold; return the status and the cost there.
 
     Parameters
     ----------
-    rows, x, points, setting, state, most, limits, equations, weight, rounds, steps
+    rows, x, points, setting, state
         As for :func:`synthesis.numerics.augmented_lagrangian.descend_constrained`.
-    in_workspace : int
-        Number of the limits, the first ones, that are margins of a workspace.
+    counts : RowCounts
+        Numbers of rows.
+    schedule : Schedule
+        Effort of the descents.
     """
     ended = np.empty(1)
     status = Status(
-        descend_constrained(rows, x, points, setting, state, most, limits, equations, weight, rounds, steps, ended)
+        descend_constrained(
+            rows, x, points, setting, state, counts.most, counts.limits, counts.equations, *schedule, ended
+        )
     )
-    if in_workspace and status is Status.INFEASIBLE:
+    if counts.in_workspace and status is Status.INFEASIBLE:
         # A minimum distance has kinks, at which multipliers do not converge. Accept a point that is close enough.
-        margins = state[len(state) - limits :]
-        room, demands = margins[:in_workspace], margins[in_workspace:]
+        margins = state[len(state) - counts.limits :]
+        room, demands = margins[: counts.in_workspace], margins[counts.in_workspace :]
         # Equations that are not requested are infinite and do not count.
-        zero = np.abs(demands[-equations:])
-        off = max(-float(demands[:-equations].min()), float(zero[np.isfinite(zero)].max(initial=0.0)))
+        zero = np.abs(demands[-counts.equations :])
+        off = max(-float(demands[: -counts.equations].min()), float(zero[np.isfinite(zero)].max(initial=0.0)))
         # Ten times the usual tolerance: the later verification decides, and this only keeps promising fits.
         if off <= 10.0 * VIOLATION_TOLERANCE and -float(room.min()) <= WORKSPACE_TOLERANCE and math.isfinite(ended[0]):
             status = Status.STEP_LIMIT

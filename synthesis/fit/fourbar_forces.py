@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ from synthesis.fit.fourbar_loads import (
     pack_loads,
     weigh_links,
 )
-from synthesis.model.dynamics.request import DesignDynamics, LengthUnit
+from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity, LengthUnit
 
 WINDOW_COUNT, POSITION_COUNT = 12, 145
 """Windows of the motion, and positions in all of them together, both ends included."""
@@ -67,7 +66,11 @@ NO_FORCE_LIMITS = np.zeros(0)
 
 
 def pack_forces(
-    dynamics: DesignDynamics | None, limits: Mapping[Any, float], unit: LengthUnit, origin: complex, size: float
+    dynamics: DesignDynamics | None,
+    limits: Mapping[ForceQuantity, float],
+    unit: LengthUnit,
+    origin: complex,
+    size: float,
 ) -> Real:
     """Pack limits on forces with their loads; empty without limits, or if the closed form does not cover the block.
 
@@ -89,12 +92,13 @@ def pack_forces(
         return NO_FORCE_LIMITS
     out = np.full(BLOCK, np.inf)
     out[SIZE], out[COUPLE], out[STRENGTH] = size * dynamics.scale(unit), -1.0, 1.0
-    for name, place in (
-        ("drive_torque", DRIVE),
-        ("joint_force", JOINT),
-        ("shaking_force", SHAKING_FORCE),
-        ("shaking_moment", SHAKING_MOMENT),
-    ):
+    places: dict[ForceQuantity, int] = {
+        "drive_torque": DRIVE,
+        "joint_force": JOINT,
+        "shaking_force": SHAKING_FORCE,
+        "shaking_moment": SHAKING_MOMENT,
+    }
+    for name, place in places.items():
         if name in limits:
             out[LIMITS_INDEX + place] = limits[name]
     speed = abs(float(block[SPEED]))

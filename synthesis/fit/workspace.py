@@ -96,9 +96,7 @@ def pack_workspace(
     origin: complex,
     size: float,
     *,
-    parts: Sequence[Sequence[int]] = FOURBAR_PARTS,
     first: complex | None = None,
-    pivots: Sequence[int] = (O2, O4, A, B),
     aim: float = AIM_SHARE,
     spare: float = np.inf,
     forces: Real = NO_LIMITS,
@@ -111,13 +109,8 @@ def pack_workspace(
         The requested workspace.
     origin, size : complex and float
         Of the task.
-    parts : sequence of joints
-        The moving links by their joints, one to three each. With an outline of the body, and ``first``, P belongs to
-        none of them.
     first : complex, optional
         P of the body as drawn, in the problem's coordinates, for a linkage that carries one.
-    pivots : four joints
-        The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage lacks.
     aim : float
         Share of the task's size by which all limits are narrowed.
     spare : float
@@ -128,12 +121,12 @@ def pack_workspace(
     """
     if space is None:
         return _append_forces(np.zeros(HEADER_SIZE), [[], [], [], []], forces) if len(forces) else NO_WORKSPACE
-    zones = _pack_zones(space, origin, size, pivots, first is not None, aim)
+    zones = _pack_zones(space, origin, size, first is not None, aim)
     # Zones need only the first position; box and obstacles the whole motion.
     moves = space.has_swept_constraints
     carries = space.body is not None and first is not None
     # The body's outline stands for the coupler's third corner.
-    links = [[joint for joint in part if not (carries and joint == P)] for part in parts] if moves else []
+    links = [[joint for joint in part if not (carries and joint == P)] for part in FOURBAR_PARTS] if moves else []
     body: list[list[float]] = []
     if moves and space.body is not None and carries:
         outline = np.array([complex(*corner) for corner in space.body.outline])
@@ -232,9 +225,7 @@ def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]
     return records
 
 
-def _pack_zones(
-    space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool, aim: float
-) -> list[list[list[float]]]:
+def _pack_zones(space: Space, origin: complex, size: float, carries: bool, aim: float) -> list[list[list[float]]]:
     """Pack the zones of each pivot as records: joint, whether on the body, radius, margin, number of corners,
     corners."""
     fixed, moving = space.fixed_pivots, space.moving_pivots
@@ -245,8 +236,8 @@ def _pack_zones(
         moving.output if moving else None,
     )
     tables = []
-    for zones, joint in zip(demanded, pivots, strict=True):
-        if zones is None or joint < 0:
+    for zones, joint in zip(demanded, (O2, O4, A, B), strict=True):
+        if zones is None:
             continue
         records = []
         for zone in [zones] if isinstance(zones, Zone) else zones:

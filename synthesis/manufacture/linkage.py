@@ -7,10 +7,10 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from kinematics.arrays import Real
 from kinematics.linkage.variation import Task, measure_deviations
@@ -79,7 +79,7 @@ class Linkage:
         return np.array([name.startswith("fixed_pivot") or name == "offset" for name in named])
 
 
-def extract_linkage(mechanism: Any) -> Linkage | None:
+def extract_linkage(mechanism: BaseModel) -> Linkage | None:
     """Extract the dimensions of the mechanism of an answer or a request; None for an unsupported type.
 
     Parameters

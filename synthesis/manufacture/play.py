@@ -75,17 +75,17 @@ def compute_plays(made: ManufacturedLinkage, clearance: float) -> list[Play] | N
     # For an output all clearances act along its path; its own fixed pivot adds to the disc.
     discs = (crank, guide) if guides else (crank + guide, 0.0)
     slope, gain = at.normal / lever, np.abs(at.normal) / lever
-    told = []
+    plays = []
     for k in range(len(at.a)):
         near = _Configuration(*(part[k : k + 1] for part in at))
         driven = _drive_clearances(made, near, discs)
         if driven is None:
             return None
         if guides:
-            told.append(_compute_point_play(made, k, near, slope[k], gain[k], discs, driven))
+            plays.append(_compute_point_play(made, k, near, slope[k], gain[k], discs, driven))
         else:
-            told.append(_compute_output_play(made, k, near, slope[k], discs, driven))
-    return told
+            plays.append(_compute_output_play(made, k, near, slope[k], discs, driven))
+    return plays
 
 
 class _DrivenClearances(NamedTuple):

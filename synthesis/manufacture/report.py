@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from itertools import product as combined
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from pydantic import BaseModel
 
 from kinematics.arrays import Real
 from kinematics.linkage.variation import measure_deviations
@@ -30,7 +31,7 @@ class ManufactureResult(NamedTuple):
 
 
 def report_manufacture(
-    mechanism: Any, held: RequiredTargets, block: Exactness, seed: int, used: tuple[float, float] | None
+    mechanism: BaseModel, held: RequiredTargets, block: Exactness, seed: int, used: tuple[float, float] | None
 ) -> ManufactureResult:
     """Report all manufacturing results of a design.
 
@@ -49,7 +50,8 @@ def report_manufacture(
     """
     linkage = extract_linkage(mechanism)
     if linkage is None:
-        return ManufactureResult(ManufactureReport(remark=f"not built for {mechanism.type}"), None)
+        mechanism_type = mechanism.model_dump(include={"type"})["type"]
+        return ManufactureResult(ManufactureReport(remark=f"not built for {mechanism_type}"), None)
     made = build_product(linkage, held, block, used)
     if isinstance(made, str):
         return ManufactureResult(ManufactureReport(remark=made), None)
@@ -72,7 +74,7 @@ def report_manufacture(
         )
     # The block's own seed has precedence, so that a client can repeat or vary the samples alone.
     seeded = seed if block.seed is None else block.seed
-    told = ManufactureReport(
+    report = ManufactureReport(
         seed=seeded if block.is_sampled else None,
         worst_case=_find_worst_case(made, off),
         matter=_select_important(listed),
@@ -81,7 +83,7 @@ def report_manufacture(
         widest=allocated,
         remark=remark,
     )
-    return ManufactureResult(told, sample_yield(made, block, seeded) if block.is_sampled else None)
+    return ManufactureResult(report, sample_yield(made, block, seeded) if block.is_sampled else None)
 
 
 def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensitivities]:

@@ -67,10 +67,10 @@ def find_widest_tolerances(
         ("sort", _allocate_by_sort(squares, open_ones, pivots)),
         ("scale", off),
     ):
-        told = _scale_tolerances(made, block, seed, demanded, shape, off)
-        if told is None:
+        scaled = _scale_tolerances(made, block, seed, demanded, shape, off)
+        if scaled is None:
             continue
-        tolerances, share = told
+        tolerances, share = scaled
         # Mean relative cost 1/t, relative to the given tolerances.
         cost = float(np.mean(off[open_ones] / tolerances[open_ones]))
         named = {name: float(t) for name, t in zip(made.list_names, tolerances, strict=True)}

@@ -6,7 +6,7 @@ dimensions are given by these; every other type is given by its skeleton.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 
 from pydantic import BaseModel, Discriminator, Tag
 
@@ -28,7 +28,7 @@ def is_known_by_dimensions(mechanism_type: str) -> bool:
     return mechanism_type in _BY_TYPE
 
 
-def _choose_model(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
+def _choose_model(statement: object) -> type[GivenByDimensions | GivenSkeleton]:
     """Choose the model for a mechanism: the dimensions if its type has them and they are given, else the skeleton.
 
     Input that is no mechanism at all goes to the skeleton, whose error messages are the most general.

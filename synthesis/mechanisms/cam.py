@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import MISSING, fields
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from kinematics.cam.finished.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Coordinate, Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
 
 MAX_POINTS = 20_000
@@ -41,7 +43,7 @@ def get_follower_type(follower: core.Follower) -> FollowerType:
     return next(name for name, kind in FOLLOWERS.items() if isinstance(follower, kind))
 
 
-def list_dimensions(kind: type[core.Follower]) -> dict[str, Any]:
+def list_dimensions(kind: type[core.Follower]) -> JsonObject:
     """Return the names of a follower's own dimensions and their defaults."""
     # The first field is the cam's radius, which is not a dimension of the follower.
     return {field.name: 0.0 if field.default is MISSING else field.default for field in fields(kind)[1:]}
@@ -56,13 +58,12 @@ def build_follower(name: FollowerType, radius: float, spec: object) -> core.Foll
         For dimensions of an impossible follower.
     """
     # Only the fields of this type are used, so that a surplus dimension of another type has no effect.
-    kind: Any = FOLLOWERS[name]
+    build: Callable[..., core.Follower] = FOLLOWERS[name]
     dimensions = {
         dimension: default if getattr(spec, dimension) is None else getattr(spec, dimension)
-        for dimension, default in list_dimensions(kind).items()
+        for dimension, default in list_dimensions(FOLLOWERS[name]).items()
     }
-    follower: core.Follower = kind(radius, **dimensions)
-    return follower
+    return build(radius, **dimensions)
 
 
 class GivenFollower(Statement):
@@ -138,9 +139,9 @@ class GivenCam(Statement):
     outer_wall: GivenCurve | None = Field(
         default=None, description="Outer wall of a groove; the profile is its inner wall."
     )
-    pitch_curve: Any = None
-    second: Any = Field(default=None, description="The other one of conjugate cams; ignored.")
-    program: Any = None
+    pitch_curve: object = None
+    second: object = Field(default=None, description="The other one of conjugate cams; ignored.")
+    program: object = None
 
     def build_follower(self) -> core.Follower:
         """Build the follower of the analysis core."""
@@ -173,8 +174,8 @@ class GivenBarrelCam(Statement):
     rotation: Literal["ccw", "cw"] = "ccw"
     lower_wall: GivenCurve
     upper_wall: GivenCurve
-    pitch_curve: Any = None
-    program: Any = None
+    pitch_curve: object = None
+    program: object = None
 
 
 class EccentricContour(Statement):

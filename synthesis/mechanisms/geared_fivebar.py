@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,7 @@ class GivenGearedFivebar(GivenByDimensions):
         ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
         low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
 
-        def measure_margin(turn: NDArray[np.floating[Any]]) -> Real:
+        def measure_margin(turn: NDArray[np.floating]) -> Real:
             pins = (
                 o5
                 - o2

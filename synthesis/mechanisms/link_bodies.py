@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import SupportsComplex
 
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body, join_bodies, make_body
@@ -38,7 +38,7 @@ class LinkBodies:
         The length unit in the unit of the forces.
     """
 
-    def __init__(self, joints: Mapping[str, Any], links: Mapping[str, Sequence[str]], scale: float) -> None:
+    def __init__(self, joints: Mapping[str, SupportsComplex], links: Mapping[str, Sequence[str]], scale: float) -> None:
         self.joints = joints
         self.links = links
         self.scale = scale

@@ -8,12 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Real
+from kinematics.arrays import Real, Scalar
 from kinematics.dynamics.bodies import Body, is_too_slender
 from kinematics.dynamics.friction import Friction, find_rubbing_joints
 from kinematics.dynamics.loads import JointForce, Load, PointForce, Resistance, Torque, TurningResistance
@@ -258,7 +257,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
 def _select_first(mechanism: Mechanism) -> Mechanism:
     """Return the first of many designs."""
 
-    def take_first(value: NDArray[Any]) -> NDArray[Any]:
+    def take_first(value: NDArray[Scalar]) -> NDArray[Scalar]:
         return np.asarray(np.broadcast_to(value, mechanism.shape)[0])
 
     slides = tuple(

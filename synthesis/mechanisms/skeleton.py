@@ -6,13 +6,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from itertools import combinations
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 from synthesis.mechanisms.base import MechanismError
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.given_linkage import (
     AGREEMENT_TOLERANCE,
     BODY_DESCRIPTION,
@@ -56,7 +57,7 @@ def _build_mechanism(spec: SkeletonSpec, turns: int) -> Mechanism:
         raise MechanismError("/skeleton", str(error)) from None
 
 
-def describe_skeleton(mechanism: Mechanism) -> dict[str, Any]:
+def describe_skeleton(mechanism: Mechanism) -> JsonObject:
     """Describe the skeleton of a mechanism in its reference configuration, in JSON form."""
 
     def convert_to_pair(z: complex) -> tuple[float, float]:

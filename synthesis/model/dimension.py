@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import StrEnum
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -148,7 +148,7 @@ def collect_dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
     return measured
 
 
-def _find_in_annotation(annotation: Any) -> Iterator[Dimension]:
+def _find_in_annotation(annotation: object) -> Iterator[Dimension]:
     """Yield the dimensions in a type: in its metadata, and in the members of unions and containers."""
     for part in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
         if isinstance(part, Dimension):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import get_args
 
 from pydantic import BaseModel
 
@@ -13,7 +13,7 @@ def list_mechanism_types(model: type[BaseModel]) -> list[str]:
     return [name for mechanism in mechanisms for name in get_args(mechanism.model_fields["type"].annotation)]
 
 
-def collect_models(annotation: Any) -> list[type[BaseModel]]:
+def collect_models(annotation: object) -> list[type[BaseModel]]:
     """Return the models that occur in a type annotation."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]

@@ -6,7 +6,7 @@ degrees of freedom. Each kind lists such contradictions by field in ``contradict
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
@@ -22,7 +22,7 @@ MIN_MAGNITUDE = 1e-30
 """Magnitude below which a number is read as 0: it is rounding noise, and products of a few such numbers underflow."""
 
 
-def _flush_tiny(number: Any) -> Any:
+def _flush_tiny(number: object) -> object:
     return 0.0 if isinstance(number, float) and -MIN_MAGNITUDE < number < MIN_MAGNITUDE else number
 
 

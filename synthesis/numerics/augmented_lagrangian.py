@@ -16,14 +16,13 @@ appends their rows by :func:`append_limit_rows`. A limit that was not given has 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import types
 
 from kinematics.arrays import Real
 from kinematics.compiling import njit
-from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, compute_half_square, descend
+from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, Rows, compute_half_square, descend
 from synthesis.numerics.status import Status
 
 VIOLATION_TOLERANCE = 1e-11
@@ -107,7 +106,7 @@ def _update_multipliers(margins: Real, equations: int, multipliers: Real) -> flo
     nogil=True,
 )  # fmt: skip
 def descend_constrained(
-    rows: Any,
+    rows: Rows,
     x: Real,
     points: Real,
     setting: Real,

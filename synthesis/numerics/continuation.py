@@ -25,14 +25,14 @@ tracker serves every system and both are cached on disk.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
-from kinematics.arrays import Complex
+from kinematics.arrays import Complex, Integers, Real
 from kinematics.compiling import njit
 from synthesis.numerics.double_double import add, multiply
 
@@ -41,6 +41,9 @@ _INDICES = types.Array(types.int64, 1, "C")
 
 SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR)
 """The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
+
+System = Callable[[Complex, Complex, Complex, Complex, Complex, Complex, Complex, Complex], int]
+"""The same for a type checker."""
 
 END_REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
 """Status of a path's end; only :data:`END_REACHED` is a solution."""
@@ -72,6 +75,32 @@ CHUNK_SIZE = 16
 """Number of paths that a thread takes at a time: a few milliseconds of work."""
 
 
+class CompiledSystem(NamedTuple):
+    """A system of equations, as the tracker needs it.
+
+    Attributes
+    ----------
+    evaluate : compiled function of type :data:`SYSTEM`
+        The system; see the module's description.
+    groups : int, shape (n,)
+        Group number of each unknown; adjacent unknowns of one group share a scale, by which steps are measured.
+    scratch : int
+        Number of complex numbers that ``evaluate`` needs as ``work``.
+    """
+
+    evaluate: System
+    groups: Integers
+    scratch: int
+
+
+class ParameterPath(NamedTuple):
+    """How the parameters move: p₀, p₁ and b, complex, shape (parameters,)."""
+
+    start: Complex
+    end: Complex
+    bend: Complex
+
+
 class PathEnds(NamedTuple):
     """Ends of paths.
 
@@ -87,12 +116,12 @@ class PathEnds(NamedTuple):
 
     y: Complex
     low: Complex
-    status: NDArray[np.int64]
-    steps: NDArray[np.int64]
+    status: Integers
+    steps: Integers
 
 
 @njit(cache=True, nogil=True)
-def _compute_relative_size(step: Complex, y: Complex, groups: Any) -> float:
+def _compute_relative_size(step: Complex, y: Complex, groups: Integers) -> float:
     """Return the size of a step relative to the point: the maximum over the groups of unknowns that share a scale."""
     largest = 0.0
     n = 0
@@ -142,8 +171,8 @@ def _interpolate_precise_parameters(
     nogil=True,
 )  # fmt: skip
 def _refine(
-    system: Any,
-    groups: Any,
+    system: System,
+    groups: Integers,
     y: Complex,
     low: Complex,
     p: Complex,
@@ -170,6 +199,81 @@ def _refine(
     return moved
 
 
+class _Parameters(NamedTuple):
+    """The path of the parameters, and where they and their errors and derivatives are written."""
+
+    start: Complex
+    end: Complex
+    bend: Complex
+    p: Complex
+    p_low: Complex
+    dp: Complex
+
+
+class _Buffers(NamedTuple):
+    """Where a system writes its two steps, and its scratch."""
+
+    newton: Complex
+    tangent: Complex
+    work: Complex
+
+
+@njit(cache=True, nogil=True)
+def _predict(
+    system: System, y: Complex, low: Complex, left: float, h: float, precise: bool, parameters: _Parameters,
+    buffers: _Buffers, slopes: Complex, at: Complex, rest: Complex,
+) -> None:  # fmt: skip
+    """Write the point after a step h of Runge–Kutta's classical method into ``at`` and ``rest``.
+
+    ``slopes`` has the slope at the present point in its first row and receives those of the other stages.
+    """
+    start, end, bend, p, p_low, dp = parameters
+    newton, tangent, work = buffers
+    # Stages 1 and 2 share the parameters at the middle of the step.
+    for stage in range(1, 4):
+        reach = h if stage == 3 else 0.5 * h
+        if stage != 2 and precise:
+            _interpolate_precise_parameters(left - reach, start, end, bend, p, p_low, dp)
+        elif stage != 2:
+            _interpolate_parameters(left - reach, start, end, bend, p, dp)
+        for k in range(y.size):
+            at[k] = y[k] + reach * slopes[stage - 1, k]
+        system(at, low, p, p_low, dp, newton, tangent, work)
+        slopes[stage] = tangent
+    for k in range(y.size):
+        change = h / 6.0 * (slopes[0, k] + 2.0 * (slopes[1, k] + slopes[2, k]) + slopes[3, k])
+        at[k], rest[k] = add(y[k], low[k], change, 0j)
+
+
+@njit(cache=True, nogil=True)
+def _correct(
+    system: System, groups: Integers, at: Complex, rest: Complex, parameters: _Parameters, buffers: _Buffers,
+    tolerance: float, precise: bool,
+) -> tuple[bool, float]:  # fmt: skip
+    """Run Newton's method in place; return whether it converged, and the relative size of its first step."""
+    p, p_low, dp = parameters.p, parameters.p_low, parameters.dp
+    newton, tangent, work = buffers
+    # Higher precision pays only if the corrector uses it: tighter tolerance, more steps.
+    close, corrections = (
+        (PRECISE_CORRECTOR_TOLERANCE, MAX_PRECISE_CORRECTIONS) if precise else (CORRECTOR_TOLERANCE, MAX_CORRECTIONS)
+    )
+    missed = 0.0
+    for correction in range(corrections):
+        if system(at, rest, p, p_low, dp, newton, tangent, work) == 0:
+            break
+        moved = _compute_relative_size(newton, at, groups)
+        if correction == 0:
+            missed = moved
+        # A large correction may lead to a neighbouring path: refuse the step.
+        if not moved <= tolerance:
+            break
+        for k in range(at.size):
+            at[k], rest[k] = add(at[k], rest[k], newton[k], 0j)
+        if moved < close:
+            return True, missed
+    return False, missed
+
+
 @njit(
     types.UniTuple(types.int64, 2)(
         types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, types.float64, types.int64,
@@ -179,8 +283,8 @@ def _refine(
     nogil=True,
 )  # fmt: skip
 def _follow(
-    system: Any,
-    groups: Any,
+    system: System,
+    groups: Integers,
     y: Complex,
     low: Complex,
     start: Complex,
@@ -193,17 +297,13 @@ def _follow(
 ) -> tuple[int, int]:
     """Follow one path in place, from the start ``y`` to the end; return status and number of steps."""
     n = y.size
-    work = np.empty(scratch, np.complex128)
     p, dp = np.empty(start.size, np.complex128), np.empty(start.size, np.complex128)
     p_low = np.zeros(start.size, np.complex128)
     slopes = np.empty((4, n), np.complex128)
-    newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    newton, tangent, work = np.empty(n, np.complex128), np.empty(n, np.complex128), np.empty(scratch, np.complex128)
     at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
+    parameters, buffers = _Parameters(start, end, bend, p, p_low, dp), _Buffers(newton, tangent, work)
     left, h, tried, grown = 1.0, FIRST_STEP, 0, 2.0
-    # Higher precision pays only if the corrector uses it: tighter tolerance, more steps.
-    close, corrections = (
-        (PRECISE_CORRECTOR_TOLERANCE, MAX_PRECISE_CORRECTIONS) if precise else (CORRECTOR_TOLERANCE, MAX_CORRECTIONS)
-    )
     _interpolate_parameters(left, start, end, bend, p, dp)
     system(y, low, p, p_low, dp, newton, tangent, work)
     slopes[0] = tangent
@@ -216,35 +316,8 @@ def _follow(
         tried += 1
         # The last step ends exactly at t = 1.
         h = min(h, left)
-        # Runge–Kutta's classical stages; stages 1 and 2 share the parameters at the middle of the step.
-        for stage in range(1, 4):
-            reach = h if stage == 3 else 0.5 * h
-            if stage != 2 and precise:
-                _interpolate_precise_parameters(left - reach, start, end, bend, p, p_low, dp)
-            elif stage != 2:
-                _interpolate_parameters(left - reach, start, end, bend, p, dp)
-            for k in range(n):
-                at[k] = y[k] + reach * slopes[stage - 1, k]
-            system(at, low, p, p_low, dp, newton, tangent, work)
-            slopes[stage] = tangent
-        for k in range(n):
-            change = h / 6.0 * (slopes[0, k] + 2.0 * (slopes[1, k] + slopes[2, k]) + slopes[3, k])
-            at[k], rest[k] = add(y[k], low[k], change, 0j)
-        missed, accepted = 0.0, False
-        for correction in range(corrections):
-            if system(at, rest, p, p_low, dp, newton, tangent, work) == 0:
-                break
-            moved = _compute_relative_size(newton, at, groups)
-            if correction == 0:
-                missed = moved
-            # A large correction may lead to a neighbouring path: refuse the step.
-            if not moved <= tolerance:
-                break
-            for k in range(n):
-                at[k], rest[k] = add(at[k], rest[k], newton[k], 0j)
-            if moved < close:
-                accepted = True
-                break
+        _predict(system, y, low, left, h, precise, parameters, buffers, slopes, at, rest)
+        accepted, missed = _correct(system, groups, at, rest, parameters, buffers, tolerance, precise)
         # The prediction error is of order h⁵; aim at 0.4 of the tolerance.
         scale = (0.4 * tolerance / (missed + UNDERFLOW_LIMIT)) ** 0.2 if missed < OVERFLOW_LIMIT else 0.2
         if accepted:
@@ -271,7 +344,9 @@ def _follow(
     cache=True,
     nogil=True,
 )  # fmt: skip
-def _refine_all(system: Any, groups: Any, y: Complex, low: Complex, p: Complex, scratch: int, moved: Any) -> None:
+def _refine_all(
+    system: System, groups: Integers, y: Complex, low: Complex, p: Complex, scratch: int, moved: Real
+) -> None:
     """Refine all solutions in place; ``moved`` receives the relative size of each one's last step."""
     work, still = np.empty(scratch, np.complex128), np.zeros(p.size, np.complex128)
     newton, tangent = np.empty(y.shape[1], np.complex128), np.empty(y.shape[1], np.complex128)
@@ -289,8 +364,8 @@ def _refine_all(system: Any, groups: Any, y: Complex, low: Complex, p: Complex, 
     nogil=True,
 )  # fmt: skip
 def _follow_all(
-    system: Any,
-    groups: Any,
+    system: System,
+    groups: Integers,
     y: Complex,
     low: Complex,
     start: Complex,
@@ -300,8 +375,8 @@ def _follow_all(
     most_steps: int,
     scratch: int,
     precise: bool,
-    status: Any,
-    steps: Any,
+    status: Integers,
+    steps: Integers,
 ) -> None:
     """Follow all paths in place; ``status`` and ``steps`` receive the outcome of each."""
     for path in range(y.shape[0]):
@@ -311,13 +386,9 @@ def _follow_all(
 
 
 def follow(
-    system: Any,
-    groups: NDArray[np.int64],
-    scratch: int,
+    system: CompiledSystem,
     y: Complex,
-    start: Complex,
-    end: Complex,
-    bend: Complex,
+    path: ParameterPath,
     *,
     tolerance: float = 5e-3,
     most_steps: int = 5000,
@@ -328,16 +399,12 @@ def follow(
 
     Parameters
     ----------
-    system : compiled function of type :data:`SYSTEM`
-        The system; see the module's description.
-    groups : int, shape (n,)
-        Group number of each unknown; adjacent unknowns of one group share a scale, by which steps are measured.
-    scratch : int
-        Number of complex numbers that ``system`` needs as ``work``.
+    system : CompiledSystem
+        The equations.
     y : complex, shape (paths, n)
-        Solutions at ``start``.
-    start, end, bend : complex, shape (parameters,)
-        p₀, p₁ and b.
+        Solutions at the start of the path.
+    path : ParameterPath
+        The way of the parameters.
     tolerance : float
         Maximum relative error of a prediction. A smaller one takes more steps but seldom jumps to another path.
     most_steps : int
@@ -357,28 +424,37 @@ def follow(
     count = len(ends)
     status, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
     # Compiled kernels require contiguous arrays.
-    ways = [np.ascontiguousarray(p, np.complex128) for p in (start, end, bend)]
+    start, end, bend = (np.ascontiguousarray(p, np.complex128) for p in path)
 
-    kernel: Any = _follow_all
-
-    def run_chunk(first: int) -> None:
+    def follow_chunk(first: int) -> None:
         # Slices of the same arrays: each thread writes its own rows.
-        some = slice(first, first + CHUNK_SIZE)
-        limits = tolerance, most_steps, scratch, precise
-        kernel(system, groups, ends[some], low[some], *ways, *limits, status[some], steps[some])
+        chunk = slice(first, first + CHUNK_SIZE)
+        _follow_all(
+            system.evaluate,
+            system.groups,
+            ends[chunk],
+            low[chunk],
+            start,
+            end,
+            bend,
+            tolerance,
+            most_steps,
+            system.scratch,
+            precise,
+            status[chunk],
+            steps[chunk],
+        )
 
     if threads == 1:
         for first in range(0, count, CHUNK_SIZE):
-            run_chunk(first)
+            follow_chunk(first)
     else:
         with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(run_chunk, range(0, count, CHUNK_SIZE)))
+            list(pool.map(follow_chunk, range(0, count, CHUNK_SIZE)))
     return PathEnds(ends, low, status, steps)
 
 
-def refine(
-    system: Any, groups: NDArray[np.int64], scratch: int, y: Complex, low: Complex, p: Complex
-) -> tuple[Complex, Complex, NDArray[np.float64]]:
+def refine(system: CompiledSystem, y: Complex, low: Complex, p: Complex) -> tuple[Complex, Complex, Real]:
     """Refine approximate solutions at the parameters ``p`` by Newton's method.
 
     Returns
@@ -390,8 +466,8 @@ def refine(
     """
     y, low = np.array(y, np.complex128, order="C"), np.array(low, np.complex128, order="C")
     moved = np.empty(len(y))
-    kernel: Any = _refine_all
-    kernel(system, groups, y, low, np.ascontiguousarray(p, np.complex128), scratch, moved)
+    p = np.ascontiguousarray(p, np.complex128)
+    _refine_all(system.evaluate, system.groups, y, low, p, system.scratch, moved)
     return y, low, moved
 
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from importlib import import_module
-from typing import Any
+from types import ModuleType
 
 
-def import_cvxpy() -> Any:
+def import_cvxpy() -> ModuleType:
     """Import cvxpy and return it. The import takes a second, so that only callers that solve a program pay for it."""
     return import_module("cvxpy")
 
 
-def solve_convex_program(cost: Any, constraints: list[Any]) -> bool:
+def solve_convex_program(cost: object, constraints: Sequence[object]) -> bool:
     """Solve a cvxpy program and return whether it has a solution.
 
     A solution of reduced accuracy counts, since callers measure the result themselves.

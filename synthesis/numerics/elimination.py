@@ -5,16 +5,12 @@ A call of LAPACK costs more than the arithmetic of a system of ten unknowns, and
 
 from __future__ import annotations
 
-from typing import Any
-
-from numpy.typing import NDArray
-
-from kinematics.arrays import Complex
+from kinematics.arrays import Complex, Integers, Numbers
 from kinematics.compiling import njit
 
 
 @njit(cache=True, nogil=True)
-def factor(matrix: NDArray[Any], pivots: Any) -> bool:
+def factor(matrix: Numbers, pivots: Integers) -> bool:
     """Decompose a matrix into L and U in place, with partial pivoting, and return whether the matrix is regular.
 
     Afterwards ``matrix``, shape (n, n), holds L below the diagonal, U above it, and the reciprocals of U's diagonal on
@@ -47,7 +43,7 @@ def factor(matrix: NDArray[Any], pivots: Any) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def solve(factors: NDArray[Any], pivots: Any, b: NDArray[Any]) -> None:
+def solve(factors: Numbers, pivots: Integers, b: Numbers) -> None:
     """Replace ``b``, shape (n,), by the solution of the system decomposed by :func:`factor`."""
     n = factors.shape[0]
     for k in range(n):

@@ -16,14 +16,13 @@ Problems have the form of :mod:`synthesis.numerics.levenberg`, with the same row
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import types
 
 from kinematics.arrays import Integers, Real
 from kinematics.compiling import njit
-from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, compute_half_square
+from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, Rows, compute_half_square
 
 FIRST_DAMPING, MIN_DAMPING, MAX_DAMPING = 1e-3, 1e-20, 1e8
 """Damping μ: initial value, minimum, and the value above which the descent has stalled."""
@@ -174,7 +173,7 @@ def _move_open(x: Real, open_: Integers, free: int, step: Real, trial: Real) -> 
     error_model="numpy",
 )
 def follow_valley(
-    rows: Any, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int
+    rows: Rows, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int
 ) -> float:
     """Descend from x in place, and return half the sum of squares at the end; infinite if the start is impossible.
 

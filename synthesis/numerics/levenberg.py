@@ -22,7 +22,7 @@ IMM-REP-1999-05, sec. 3).
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from numba import types
@@ -38,6 +38,9 @@ MATRIX = types.Array(types.float64, 2, "C")
 
 ROWS = types.int64(VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
 """The type of a problem: x, points, setting, multipliers, state, residuals, jacobian."""
+
+Rows = Callable[[Real, Real, Real, Real, Real, Real, Real], int]
+"""The same for a type checker."""
 
 MIN_DAMPING, FIRST_DAMPING, MAX_DAMPING = 1e-15, 1e-3, 1e12
 """Damping μ: minimum, initial value, and the value above which the descent has stalled."""
@@ -58,7 +61,7 @@ _NO_DECREASE, _SINGULAR, _IMPOSSIBLE = int(Status.NO_DECREASE), int(Status.SINGU
 _STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
 _STEP, _ZERO = int(Status.STEP), int(Status.ZERO)
 
-DESCENT_RESULT: Any = types.Tuple((types.float64, types.int64))
+DESCENT_RESULT = types.Tuple((types.float64, types.int64))
 """Compiled type of a descent's result: half the sum of squares and the :class:`~synthesis.numerics.status.Status`."""
 
 
@@ -114,6 +117,26 @@ def _damp_equations(matrix: Real, gradient: Real, damping: float, scale: Real, f
         factor[i, i] += damping * scale[i]
 
 
+@njit(cache=True, nogil=True)
+def _solve_step(matrix: Real, gradient: Real, damping: float, scale: Real, factor: Real, step: Real) -> float:
+    """Write the damped step; return its largest change before it is shortened, −1 if the equations are singular."""
+    _damp_equations(matrix, gradient, damping, scale, factor, step)
+    if not solve_positive(factor, step):
+        return -1.0
+    longest: float = np.abs(step).max()
+    # Shorten, but keep the direction; the predicted gain is then computed for the shortened step.
+    step *= MAX_STEP / longest if longest > MAX_STEP else 1.0
+    return longest
+
+
+@njit(cache=True, nogil=True)
+def _compute_damping_factor(gained: float, expected: float) -> float:
+    """Return the factor of the damping after a step that gained less or more than expected."""
+    # Without a predicted gain the model is at rounding level; 1 leaves the damping moderate.
+    ratio = gained / expected if expected > 0.0 else 1.0
+    return max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
+
+
 @njit(
     DESCENT_RESULT(
         types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64, types.float64
@@ -122,7 +145,7 @@ def _damp_equations(matrix: Real, gradient: Real, damping: float, scale: Real, f
     nogil=True,
 )
 def descend(
-    rows: Any, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int,
+    rows: Rows, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int,
     tolerance: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Descend from x in place to a local minimum, and return half the sum of squares there and the status.
@@ -165,35 +188,29 @@ def descend(
     for _ in range(steps):
         if cost < ZERO_COST:
             return cost, _ZERO
-        _damp_equations(matrix, gradient, damping, scale, factor, step)
+        longest = _solve_step(matrix, gradient, damping, scale, factor, step)
         # A matrix that is not positive definite to rounding needs much more damping: leave it in big steps.
-        if not solve_positive(factor, step):
+        if longest < 0.0:
             damping *= 10.0
             if damping > MAX_DAMPING:
                 return cost, _SINGULAR
             continue
-        longest = np.abs(step).max()
         if not longest < np.inf:
             return cost, _SINGULAR
-        # Shorten, but keep the direction; the predicted gain is then computed for the shortened step.
-        step *= MAX_STEP / longest if longest > MAX_STEP else 1.0
         expected = _predict_gain(matrix, gradient, step)
         trial[:] = x + step
         trial_state[:] = state
         trial_m = rows(trial, points, setting, multipliers, trial_state, trial_residuals, trial_jacobian)
         trial_cost = compute_half_square(trial_residuals, trial_m) if trial_m >= 0 else np.inf
         if trial_cost < cost:
-            # Without a predicted gain the model is at rounding level; 1 leaves the damping moderate.
-            ratio = (cost - trial_cost) / expected if expected > 0.0 else 1.0
+            damping = max(damping * _compute_damping_factor(cost - trial_cost, expected), MIN_DAMPING)
+            growth = 2.0
             small = small + 1 if cost - trial_cost <= tolerance * cost else 0
             cost, m = trial_cost, trial_m
-            x[:] = trial
-            state[:] = trial_state
+            x[:], state[:] = trial, trial_state
             residuals, trial_residuals = trial_residuals, residuals
             jacobian, trial_jacobian = trial_jacobian, jacobian
             _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
-            damping = max(damping * max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3), MIN_DAMPING)
-            growth = 2.0
             # Two in turn, because one tiny gain may follow a badly damped step.
             if small >= 2:
                 return cost, _COST
@@ -220,7 +237,7 @@ def descend(
     nogil=True,
 )  # fmt: skip
 def descend_each(
-    rows: Any,
+    rows: Rows,
     starts: Real,
     points: Real,
     setting: Real,

@@ -15,15 +15,12 @@ from __future__ import annotations
 import math
 from functools import cache
 from itertools import combinations_with_replacement
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Complex, Real
-
-Numbers = NDArray[Any]
-"""Real or complex numbers; real input gives real output."""
+from kinematics.arrays import Complex, Numbers, Real
 
 DEGENERACY_TOLERANCE = 1e-11
 """Relative singular value of the monomial equations below which the quadrics have a whole curve in common."""
@@ -173,7 +170,8 @@ def _refine_points(forms: Real, points: Numbers, error: float) -> CommonPoints:
         if min(gaps, default=1.0) > DIRECTION_TOLERANCE:
             kept.append(int(k))
     double = ~proved[: len(reals)][kept]
-    return CommonPoints(reals[kept].reshape(-1, m), double, True, everywhere[~proved].astype(np.complex128))
+    real = reals[kept].reshape(-1, m).astype(np.float64)
+    return CommonPoints(real, double, True, everywhere[~proved].astype(np.complex128))
 
 
 def _iterate_newton(forms: Real, points: Numbers) -> Numbers:

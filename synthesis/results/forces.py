@@ -14,10 +14,10 @@ from synthesis.model.answer import AnyResult, Check, Verification
 from synthesis.model.dimension import FORCE, POWER, TORQUE, Dimension
 from synthesis.model.dynamics.bodies import BodySpec, Shape
 from synthesis.model.dynamics.peak_forces import DesignForces, ForcePeak, JointForcePeak, PowerPeak, TorquePeak
-from synthesis.model.dynamics.request import DesignDynamics, LengthUnit, LoadedLinkage
+from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity, LengthUnit, LoadedLinkage
 from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import MotionMetrics
-from synthesis.model.linkage.problem import Constraints, Force, LinkageProblem
+from synthesis.model.linkage.problem import Constraints, LinkageProblem
 from synthesis.model.protocols import DrivenDesign, LinkageMeasures
 from synthesis.verification.checks import check_maximum
 from synthesis.verification.reconstruction import rebuild_mechanism
@@ -27,7 +27,7 @@ Design = TypeVar("Design", bound=DrivenDesign)
 STEP_COUNT = 72
 """Number of steps of a motion, between which peaks are refined."""
 
-DIMENSIONS: Mapping[Force, Dimension | None] = {
+DIMENSIONS: Mapping[ForceQuantity, Dimension | None] = {
     "drive_torque": TORQUE,
     "joint_force": FORCE,
     "shaking_force": FORCE,

@@ -7,14 +7,14 @@ by more than the distance found so far are skipped: the result is exact and usua
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Complex, Integers, Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
 class Part(NamedTuple):

@@ -91,7 +91,8 @@ def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:
     if not (start.ndim == end.ndim == 0):
         shape = broadcast_shape(designs=shape, start=start.shape, end=end.shape)
     free = np.empty(shape, np.bool_)
-    kernels.check_branch(*broadcast_over_designs(linkage.blocks, shape, start, end), free.reshape(-1))
+    pivots, lengths, (starts, ends) = broadcast_over_designs(linkage.blocks, shape, start, end)
+    kernels.check_branch(pivots, lengths, starts, ends, free.reshape(-1))
     return free
 
 
@@ -106,8 +107,10 @@ def is_same_circuit(
     signs = {"assembly": np.shape(assembly), "other_assembly": np.shape(other_assembly)}
     shape = broadcast_shape(designs=linkage.input.shape, **angles, **signs)
     same = np.empty(shape, np.bool_)
-    configurations = angle, assembly, other_angle, other_assembly
-    kernels.compare_circuits(*broadcast_over_designs(linkage.blocks, shape, *configurations), same.reshape(-1))
+    pivots, lengths, (theta, sign, other, other_sign) = broadcast_over_designs(
+        linkage.blocks, shape, angle, assembly, other_angle, other_assembly
+    )
+    kernels.compare_circuits(pivots, lengths, theta, sign, other, other_sign, same.reshape(-1))
     return same
 
 

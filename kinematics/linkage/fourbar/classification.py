@@ -87,7 +87,8 @@ def barker_type(linkage: Fourbar) -> NDArray[np.int64]:
     A linkage that cannot be assembled (one link longer than the other three together) has no class: type 0.
     """
     types = np.empty(linkage.input.shape, np.int64)
-    kernels.classify_barker(*broadcast_over_designs(linkage.blocks, types.shape), types.reshape(-1))
+    pivots, lengths, _ = broadcast_over_designs(linkage.blocks, types.shape)
+    kernels.classify_barker(pivots, lengths, types.reshape(-1))
     return types
 
 

@@ -63,9 +63,8 @@ def find_transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLik
     if not (start.ndim == end.ndim == 0):
         shape = broadcast_shape(designs=shape, start=start.shape, end=end.shape)
     least, greatest = np.empty(shape), np.empty(shape)
-    kernels.find_extremes(
-        *broadcast_over_designs(linkage.blocks, shape, start, end), least.reshape(-1), greatest.reshape(-1)
-    )
+    pivots, lengths, (starts, ends) = broadcast_over_designs(linkage.blocks, shape, start, end)
+    kernels.find_extremes(pivots, lengths, starts, ends, least.reshape(-1), greatest.reshape(-1))
     return least, greatest
 
 

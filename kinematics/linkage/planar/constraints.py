@@ -19,12 +19,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Complex, Real
+from kinematics.arrays import Complex, Integers, Mask, Real
 
 MAX_MISFIT = 3e-6
 """Maximum misfit, as a share of the size, at which constraints count as satisfied: dimensions may be rounded."""
@@ -74,16 +74,16 @@ class Poses(NamedTuple):
         """Make unknown poses: NaN."""
         return cls(np.full((length, links, count), np.nan + 0j), np.full((length, links, count), np.nan))
 
-    def take(self, which: NDArray[Any]) -> Poses:
+    def take(self, which: Mask | Integers) -> Poses:
         """Select the poses at some positions."""
         return Poses(self.places[:, :, which], self.rotations[:, :, which])
 
-    def measure_distance(self, which: NDArray[Any], others: Poses) -> Real:
+    def measure_distance(self, which: Mask | Integers, others: Poses) -> Real:
         """Measure the distance of other poses from those at some positions, shape (M,); NaN where these are unknown."""
         places = np.abs(self.places[0, :, which].T - others.places[0]).max(axis=0)
         return np.asarray(np.maximum(places, np.abs(self.rotations[0, :, which].T - others.rotations[0]).max(axis=0)))
 
-    def store(self, which: NDArray[Any], others: Poses) -> None:
+    def store(self, which: Mask | Integers, others: Poses) -> None:
         """Store poses at some positions."""
         self.places[:, :, which], self.rotations[:, :, which] = others
 

@@ -19,12 +19,12 @@ solves the equation, or none does: the closure is undetermined, and no solution 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Complex, Integers, Mask, Real
-from kinematics.compiling import njit
+from kinematics.compiling import KernelOptions, njit
 from kinematics.linkage.kernels import TOGGLE_SINE, TOGGLE_SLACK
 
 GEAR, CARRIED_LINK, RRP, RPR, RRR, GIVEN_ROTATION = range(6)
@@ -41,10 +41,10 @@ LIMIT_TOLERANCE = 16.0 * TOGGLE_SLACK
 rounding of an angle, times the margin's rate, which is up to about ten in unit coordinates."""
 
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of the kernels."""
 
-INLINE_OPTIONS: dict[str, Any] = OPTIONS | {"forceinline": True}
+INLINE_OPTIONS: KernelOptions = {**OPTIONS, "forceinline": True}
 """Options of a step that is called in one place: LLVM inlines it, since a call would pass its arrays at each position.
 Numba's own ``inline`` would make the sweep up to 20 % slower."""
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.arrays import Complex, Real
+from kinematics.arrays import Complex, Real, Scalar
 from kinematics.errors import MechanismError
 from kinematics.linkage.fourbar.closed_form import broadcast_shape, require
 from kinematics.linkage.planar.constraints import Constraints
@@ -166,7 +166,7 @@ class Mechanism:
         """All constraints of the designs, by their numbers (all, one after the other), in unit coordinates."""
         origin, size = self.frame
 
-        def take_designs(values: NDArray[Any]) -> NDArray[Any]:
+        def take_designs(values: NDArray[Scalar]) -> NDArray[Scalar]:
             each = np.broadcast_to(values, self.shape).ravel()
             return each if designs is None else each[designs]
 

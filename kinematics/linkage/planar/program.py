@@ -6,14 +6,15 @@ unit, so that tolerances are relative and a far origin does not cost digits.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from kinematics.arrays import Complex, Integers, Real
+from kinematics.arrays import Complex, Integers, Real, Scalar
 from kinematics.linkage.fourbar.closed_form import require
 from kinematics.linkage.planar import drive_kernels as kernels
 from kinematics.linkage.planar.closures import CACHE_SIZE, Step, decompose
@@ -113,8 +114,8 @@ def build_program(mechanism: Mechanism) -> Program:
         rows = numbers.tree()
     designs = int(np.prod(mechanism.shape, dtype=np.int64))
 
-    def stack_rows(values: list[Any], dtype: type) -> NDArray[Any]:
-        out: NDArray[Any] = np.empty((designs, len(values)), dtype)
+    def stack_rows(values: Sequence[ArrayLike], dtype: type[Scalar]) -> NDArray[Scalar]:
+        out = np.empty((designs, len(values)), dtype)
         for n, value in enumerate(values):
             out[:, n] = np.broadcast_to(value, mechanism.shape).ravel()
         return out

@@ -7,12 +7,12 @@ the dyads close in the reference's assembly but violate a constraint, the other 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.arrays import Complex, Mask, Real
+from kinematics.arrays import Complex, Mask, Real, Scalar
 from kinematics.linkage.planar.constraints import MAX_MISFIT, MIN_SINGULAR_VALUE, Poses
 from kinematics.linkage.planar.mechanism import Mechanism
 
@@ -83,10 +83,10 @@ def settle(
     length, *shape = inputs.shape
     each = np.repeat(own, shape[-1])
 
-    def expand_designs(values: NDArray[Any]) -> NDArray[Any]:
+    def expand_designs(values: NDArray[Scalar]) -> NDArray[Scalar]:
         return np.asarray(np.broadcast_to(values, mechanism.shape).ravel()[each])
 
-    origin, size = (expand_designs(values) for values in mechanism.frame)
+    origin, size = expand_designs(mechanism.frame[0]), expand_designs(mechanism.frame[1])
     constraints = mechanism.constraints(each)
     turned = {link: expand_designs(mechanism.link_angle(link)) for link in constraints.links}
     moved = inputs.reshape(length, -1).copy()
@@ -121,10 +121,10 @@ def settle(
             break
     valid, smooth = _mask_unsettled(poses, best, rival, least)
 
-    def reshape_jet(jet: NDArray[Any], unit: Real, zero: NDArray[Any]) -> NDArray[Any]:
-        jet = jet * unit
-        jet[0] += zero
-        return jet.reshape(length, *shape)
+    def reshape_jet(jet: NDArray[Scalar], unit: Real, zero: NDArray[Scalar]) -> NDArray[Scalar]:
+        scaled: NDArray[Scalar] = np.multiply(jet, unit)
+        scaled[0] += zero
+        return scaled.reshape(length, *shape)
 
     one, none = np.ones(()), np.zeros(())
     return SettledMotion(

@@ -6,7 +6,6 @@ Displacements are lengths along the axis; forces along it, the torque on the bar
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -17,9 +16,10 @@ from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.cams.cam import MAX_EFFORT, FollowerSeries, ForceSeries, Load, compute_force_series
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
+from synthesis.model.json_object import JsonObject
 
 
-def _build_example_wall(mean: float, sign: float) -> dict[str, Any]:
+def _build_example_wall(mean: float, sign: float) -> JsonObject:
     """Build a wall of a groove that rises and falls once per turn, for a roller of radius 8 on a cylinder of radius
     40."""
     theta = [math.radians(2.0 * k) for k in range(180)]
@@ -57,7 +57,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
 
     load: Load | None = None
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`BarrelCamAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         given = self.mechanism

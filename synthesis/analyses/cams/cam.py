@@ -7,7 +7,6 @@ rates. Forces are along the follower's motion, torques of an oscillating one abo
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import NonNegative, PositiveNumber, Statement
 
 MAX_EFFORT = 40_000_000
@@ -80,7 +80,7 @@ class Cutter(Statement):
     )
 
 
-EXAMPLE: dict[str, Any] = {
+EXAMPLE: JsonObject = {
     "type": "cam",
     "follower": {"type": "translating_roller", "roller_radius": 15.0},
     "prime_radius": 40.0,
@@ -123,7 +123,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
             faults.append(("/motion/speed", "a vibration needs a positive speed"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`CamAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         contour, follower = self.mechanism.build_contour(), self.mechanism.build_follower()
@@ -172,7 +172,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
             raise MechanismError("/outer_wall", str(error)) from None
         return [float(gap) for gap in (outer - s) * unit]
 
-    def _compute_response(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
+    def _compute_response(self, contour: Contour, follower: Follower, at: Real) -> JsonObject:
         """The steady vibration at the motion's cam angles."""
         assert self.train is not None, "needs `train`"
         program = measure_program(contour, follower, self.mechanism.rotation, PROGRAM_SAMPLE_COUNT)
@@ -190,7 +190,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
             "least_contact_force": float(vibration.contact_force.min()),
         }
 
-    def _compute_cutter_path(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
+    def _compute_cutter_path(self, contour: Contour, follower: Follower, at: Real) -> JsonObject:
         """Centres of the cutter at the motion's angles, or at angles as close as the tolerance asks."""
         assert self.cutter is not None, "needs `cutter`"
         cutter, rotation = self.cutter, self.mechanism.rotation

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field
@@ -16,6 +16,7 @@ from synthesis.analyses.cams.cam import EXAMPLE, Load
 from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number, Statement
 
 PROGRAM_SAMPLE_COUNT = 360
@@ -24,7 +25,7 @@ PROGRAM_SAMPLE_COUNT = 360
 Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
 
-def _build_example_plate(cam: Any) -> Any:
+def _require_plate_cam(cam: object) -> object:
     if isinstance(cam, dict) and cam.get("type", "cam") != "cam":
         raise PydanticCustomError(
             "no_plate_cam", "a camshaft carries plate cams only; analyse other cams by themselves"
@@ -35,7 +36,7 @@ def _build_example_plate(cam: Any) -> Any:
 class ShaftCam(Statement):
     """A cam on the shaft."""
 
-    cam: Annotated[GivenCam, BeforeValidator(_build_example_plate)]
+    cam: Annotated[GivenCam, BeforeValidator(_require_plate_cam)]
     load: Load
     phase: Number = Field(default=0.0, description="Shaft angle at which the cam's angle is 0, degrees.")
 
@@ -85,7 +86,7 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
             faults.append(("/motion/acceleration", "the torques are for a constant speed; leave it out"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer with the shaft's torque over the motion, in the form of :class:`CamshaftAnalysis`."""
         at, _, _ = self.motion.list_inputs()
         cams = []

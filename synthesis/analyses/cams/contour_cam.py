@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pydantic import ConfigDict, Field
 
@@ -12,6 +10,7 @@ from kinematics.cam.motion.extremes import find_extremes
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.cam import GivenContourCam
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 
 
 class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
@@ -39,7 +38,7 @@ class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
         },
     )
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`ContourCamAnalysis`."""
         contour, follower = self.mechanism.build_core()
         at, speed, time = self.motion.list_inputs()

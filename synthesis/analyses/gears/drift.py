@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 from pydantic import Field
 
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.gears.ratio_target import parse_target
+from synthesis.model.json_object import JsonObject
 
 SECONDS_PER_DAY = 86_400.0
 
@@ -33,7 +33,7 @@ class Drift(Answer):
     )
 
 
-def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> dict[str, Any]:
+def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> JsonObject:
     """Return the field ``drift`` for a train of exactly this ratio; empty without a required ratio."""
     if ratio is None or wanted is None:
         return {}
@@ -46,11 +46,11 @@ def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> dict[s
     # The output turns by 1/ratio of the input: of a ratio that is too small it has turned too far.
     gained = exact / abs(ratio) - 1
     seconds = float(gained * Fraction(SECONDS_PER_DAY))
-    told: dict[str, Any] = {
+    entries: JsonObject = {
         "relative_error": float(abs(ratio) / exact - 1),
         "seconds_per_day": seconds,
         "days_per_second": None if seconds == 0.0 else 1.0 / abs(seconds),
     }
     if sign * ratio < 0:
-        told["opposite"] = True
-    return {"drift": told}
+        entries["opposite"] = True
+    return {"drift": entries}

@@ -7,7 +7,7 @@ module, the millimetre by default.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -19,6 +19,7 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer
 from synthesis.model.gears.request import PressureAngle, ToothNumber
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number, PositiveNumber, Statement
 
 RAD_PER_S_PER_RPM = 2.0 * math.pi / 60.0
@@ -126,12 +127,12 @@ class _PairRequest(AnalysisRequest):
     speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions per minute.")
 
     @classmethod
-    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
         """Build the answer at any input; jobs return no such pairs as designs."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
 
-def _build_schema_extra(title: str, mechanism: dict[str, Any]) -> ConfigDict:
+def _build_schema_extra(title: str, mechanism: JsonObject) -> ConfigDict:
     return ConfigDict(title=title, json_schema_extra={"examples": [{"mechanism": mechanism, "speed_rpm": 1200.0}]})
 
 
@@ -145,7 +146,7 @@ class HelicalPairRequest(_PairRequest):
 
     mechanism: GivenHelicalPair
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given = self.mechanism
         first, second = given.build_gears()
@@ -191,7 +192,7 @@ class BevelPairRequest(_PairRequest):
             return [("/mechanism/teeth", "give the pinion first; the gear has at least as many teeth")]
         return []
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given, speed = self.mechanism, self.speed_rpm * RAD_PER_S_PER_RPM
         pair = BevelPair(
@@ -226,7 +227,7 @@ class WormSetRequest(_PairRequest):
 
     mechanism: GivenWormSet
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the dimensions in the form of :class:`GearPairAnalysis`."""
         given, speed = self.mechanism, self.speed_rpm * RAD_PER_S_PER_RPM
         pair = WormSet(given.threads, given.gear_teeth, given.axial_pitch, given.worm_diameter)
@@ -246,14 +247,12 @@ class WormSetRequest(_PairRequest):
         )  # fmt: skip
 
 
-def _describe_gear(
-    teeth: int, pitch_diameter: float, circular_pitch: float, speed: float, **more: float
-) -> dict[str, Any]:
+def _describe_gear(teeth: int, pitch_diameter: float, circular_pitch: float, speed: float, **more: float) -> JsonObject:
     known = {"teeth": teeth, "pitch_diameter": pitch_diameter, "circular_pitch": circular_pitch, "speed": speed, **more}
     return {name: known.get(name) for name in PairedGear.model_fields}
 
 
-def _build_answer(ratio: float, gears: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+def _build_answer(ratio: float, gears: list[JsonObject], **more: object) -> JsonObject:
     known = {"ratio": ratio, "gears": gears, **more}
     return {name: known.get(name) for name in GearPairAnalysis.model_fields}
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ from synthesis.model.gears.answer import Helix, Ratio, find_undercut
 from synthesis.model.gears.request import ExactRatio
 from synthesis.model.gears.stages import build_train_stage
 from synthesis.model.gears.strength import RATED_STAGE_TYPES, StrengthMethod
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number
 
 DISTANCE_TOLERANCE = 1e-6
@@ -127,7 +128,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         return faults
 
     @classmethod
-    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
         """Build the answer over a cycle, without a load if friction locks a worm."""
         request = cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}})
         # The default torque of 1 would be rejected for a locked worm, so analyze such a train without it.
@@ -192,7 +193,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
                     faults.append((f"/mechanism/stages/{number}/face_width", detail))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the train, in the form of :class:`GearTrainAnalysis`."""
         return _analyze_train(self)
 
@@ -235,7 +236,7 @@ class GearTrainAnalysis(DrivenAnalysis):
     drift: Drift | None = optional_field("Given if a required ratio is given.")
 
 
-def _analyze_train(request: GearTrainAnalysisRequest) -> dict[str, Any]:
+def _analyze_train(request: GearTrainAnalysisRequest) -> JsonObject:
     """Compute speeds, torques, gears and meshes of a train over the motion."""
     at, speed, time = request.motion.list_inputs()
     train = request.mechanism.build_train()
@@ -304,7 +305,7 @@ def _compute_share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | Non
 
 def _describe_gears(
     request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
-) -> list[dict[str, Any]]:
+) -> list[JsonObject]:
     """Describe every gear with its dimensions and its motion, from the input to the output."""
     gears = []
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
@@ -318,7 +319,7 @@ def _describe_gears(
     return gears
 
 
-def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[dict[str, Any]]:
+def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[JsonObject]:
     """Describe the dimensions of the gears of a stage, in the order of their meshes."""
     cut, meshes = stage.cut_gears(train.pressure_angle), stage.meshes(train.pressure_angle)
     if stage.kind == "worm":
@@ -345,7 +346,7 @@ def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[dict[
     return [_describe_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
 
 
-def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict[str, Any]:
+def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> JsonObject:
     """Describe a gear; bevel teeth extend from the axis by ``slope``, the cosine of the cone, times their height."""
     radii = gear.pitch_radius, gear.tip_radius, gear.root_radius
     # Bevel teeth extend along the back cone, inclined to the axis by the cone angle.
@@ -362,7 +363,7 @@ def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict
     }
 
 
-def _describe_worm_stage(worm: WormDrive) -> list[dict[str, Any]]:
+def _describe_worm_stage(worm: WormDrive) -> list[JsonObject]:
     """Describe the worm, with its thickness along the axis, and its gear in the middle plane."""
     diameter, module = worm.dimensions.worm_diameter, worm.module
     threads = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -11,6 +11,7 @@ from kinematics.arrays import Real
 from kinematics.gear.gearbox import compute_layshaft_ratios, list_spindle_speeds
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
 
 ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
@@ -28,8 +29,8 @@ class GivenGearboxStage(Statement):
     """The pairs between two neighbouring shafts."""
 
     pairs: list[GivenPair] = Field(min_length=1, max_length=6)
-    characteristic: Any = None
-    centre_distance: Any = None
+    characteristic: object = None
+    centre_distance: object = None
 
 
 class GivenGearbox(Statement):
@@ -37,10 +38,10 @@ class GivenGearbox(Statement):
 
     type: Literal["gearbox"]
     stages: list[GivenGearboxStage] = Field(min_length=1, max_length=6)
-    formula: Any = None
-    input_speed: Any = None
-    module: Any = None
-    pressure_angle: Any = None
+    formula: object = None
+    input_speed: object = None
+    module: object = None
+    pressure_angle: object = None
 
     def list_teeth(self) -> list[list[tuple[int, int]]]:
         """List tooth numbers by stage and pair."""
@@ -52,7 +53,7 @@ class GivenLayshaftGear(Statement):
 
     layshaft: ToothCount | None = None
     mainshaft: ToothCount | None = None
-    ratio: Any = None
+    ratio: object = None
 
 
 class GivenReverseGear(Statement):
@@ -61,7 +62,7 @@ class GivenReverseGear(Statement):
     layshaft: ToothCount
     idler: ToothCount
     mainshaft: ToothCount
-    ratio: Any = None
+    ratio: object = None
 
 
 class GivenLayshaftGearbox(Statement):
@@ -71,9 +72,9 @@ class GivenLayshaftGearbox(Statement):
     head: GivenPair
     gears: list[GivenLayshaftGear] = Field(min_length=1, max_length=12)
     reverse: GivenReverseGear | None = None
-    module: Any = None
-    pressure_angle: Any = None
-    centre_distance: Any = None
+    module: object = None
+    pressure_angle: object = None
+    centre_distance: object = None
 
 
 class TurningShaft(TurningPart):
@@ -136,7 +137,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
                 faults.append((f"/engaged/{k}", f"stage {k + 1} has {len(stage.pairs)} pairs"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the gearbox, in the form of :class:`GearboxAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         stages = self.mechanism.list_teeth()
@@ -185,7 +186,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
             faults.append(("/gear", f"there are {len(self.mechanism.gears)} forward gears"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the gearbox, in the form of :class:`GearboxAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         box, back = self.mechanism, self.mechanism.reverse
@@ -214,7 +215,7 @@ def _build_answer(
     engaged: list[int],
     ratios: list[tuple[str, Fraction]],
     speeds: list[tuple[list[int], Fraction]],
-) -> dict[str, Any]:
+) -> JsonObject:
     """Build the answer common to both kinds of gearbox."""
     return {
         "input_angle": at.tolist(),

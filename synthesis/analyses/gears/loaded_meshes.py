@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic import Field
 
@@ -22,6 +21,7 @@ from synthesis.model.gears.strength import (
     describe_strength,
     mark_idlers,
 )
+from synthesis.model.json_object import JsonObject
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,7 @@ class LoadedMesh(MeshGeometry):
     strength: PairStrength | None = optional_field("Stresses, if a method is given.")
 
 
-def list_loaded_meshes(
-    flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]
-) -> list[dict[str, Any]]:
+def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]) -> list[JsonObject]:
     """List every mesh with its contact, its forces and its stresses, in the form of :class:`LoadedMesh`.
 
     Parameters
@@ -100,14 +98,14 @@ def list_loaded_meshes(
     """
     train = flow.train
     geometries = iter(describe_meshes(train))
-    loaded: list[dict[str, Any]] = []
+    loaded: list[JsonObject] = []
     for number, (stage, meshes, efficiencies, turns, torque) in enumerate(
         zip(train.stages, train.meshes, flow.shares, train.speeds, flow.torques[:-1], strict=True)
     ):
         begin = len(loaded)
         if stage.kind == "worm":
-            told = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
-            loaded.append({**next(geometries).model_dump(), **told, "efficiency": efficiencies[0]})
+            worm_mesh = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
+            loaded.append({**next(geometries).model_dump(), **worm_mesh, "efficiency": efficiencies[0]})
             continue
         # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
         # drives: where the output does, a mesh has lost its share before its force reaches the driver.
@@ -169,7 +167,7 @@ def _compute_force_radius(stage: TrainStage, train: OrdinaryTrain) -> float:
     return radius
 
 
-def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
+def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> JsonObject:
     """Compute axial forces of helical and bevel gears, and radial ones of the latter, for a tangential force."""
     if stage.kind == "helical":
         axial = force * math.tan(stage.helix_angle) * way
@@ -185,7 +183,7 @@ def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, 
     return {}
 
 
-def _describe_loaded_worm(flow: Flow, stage: TrainStage, torque: float, turning: float) -> dict[str, Any]:
+def _describe_loaded_worm(flow: Flow, stage: TrainStage, torque: float, turning: float) -> JsonObject:
     """Describe contact in the middle plane and forces of a worm and its gear."""
     worm, friction = stage.worm(flow.train.pressure_angle), stage.friction
     # If the gear drives, friction acts against its motion.
@@ -213,7 +211,7 @@ def _describe_strength(
     width: float | None,
     power: float,
     turning: float,
-) -> dict[str, Any]:
+) -> JsonObject:
     """Describe the stresses of one mesh of a stage, its gears in the order of the power flow, in millimetres."""
     unit = 1000.0 * flow.unit
     contact = build_stage_contact(stage, place, flow.train.pressure_angle, unit)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, ValidationError
 
@@ -13,9 +13,11 @@ from kinematics.gear.assembly import is_coaxial
 from kinematics.gear.planetary import Train
 from kinematics.gear.power import PowerFlow
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Gear
+from synthesis.analyses.gears.given_planetary_train import GivenPlanetaryTrain
 from synthesis.model.dynamics.request import METRES_PER_UNIT
 from synthesis.model.gears.planet_strength import MeshLoad, PlanetStrength, count_planes, describe_strengths
 from synthesis.model.gears.request import CommonPressureAngle, Module
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Count, Statement
 
 Share = Annotated[float, Field(strict=True, gt=0.0, le=1.5)]
@@ -43,16 +45,16 @@ class StrengthTrain(Statement):
         }
 
 
-def parse_strength_train(mechanism: Any) -> StrengthTrain:
+def parse_strength_train(mechanism: GivenPlanetaryTrain) -> StrengthTrain:
     """Extract the fields that strength needs from a mechanism; raises pydantic's ValidationError if one is missing."""
     stated = {name: getattr(mechanism, name) for name in StrengthTrain.model_fields}
     return StrengthTrain.model_validate({name: value for name, value in stated.items() if value is not None})
 
 
-def find_strength_errors(mechanism: Any, method: PlanetStrength) -> list[tuple[str, str]]:
+def find_strength_errors(mechanism: GivenPlanetaryTrain, method: PlanetStrength) -> list[tuple[str, str]]:
     """Return errors of a valid mechanism whose strength is requested."""
     faults = [(f"/strength{path}", detail) for path, detail in method.find_errors()]
-    arrangement = ARRANGEMENTS.get(mechanism.arrangement)
+    arrangement = ARRANGEMENTS.get(mechanism.arrangement or "")
     if arrangement is None:
         return [*faults, ("/strength", "give an arrangement; meshes alone do not define the gears")]
     if arrangement.bevel:
@@ -60,6 +62,7 @@ def find_strength_errors(mechanism: Any, method: PlanetStrength) -> list[tuple[s
             *faults,
             ("/strength", "the strength of a bevel differential is not estimated, only that of spur teeth"),
         ]
+    assert mechanism.teeth is not None
     # Such gears would need profile shifts, which the statement does not contain.
     if not is_coaxial(arrangement, mechanism.teeth):
         faults.append(
@@ -84,18 +87,20 @@ def find_strength_errors(mechanism: Any, method: PlanetStrength) -> list[tuple[s
 
 
 def describe_mesh_strengths(
-    mechanism: Any,
+    mechanism: GivenPlanetaryTrain,
     method: PlanetStrength,
     train: Train,
     rates: dict[str, Fraction | None],
     flow: PowerFlow,
     speed: float,
     length_unit: str,
-) -> list[dict[str, Any] | None]:
+) -> list[JsonObject | None]:
     """Describe the strength of every mesh in the form of ``PairStrength``; None for an unloaded mesh.
 
     ``rates`` are speeds over the input's, ``speed`` is the input's, rad/s.
     """
+    assert mechanism.arrangement is not None
+    assert mechanism.teeth is not None
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     loads = []
     for mesh, load in zip(train.meshes, flow.meshes, strict=True):

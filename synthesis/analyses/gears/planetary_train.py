@@ -7,16 +7,15 @@ bodies with the carriers of their axes. Speeds are exact; contradictions and und
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from kinematics.gear.arrangements import ARRANGEMENTS
-from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, compute_speed_ratio, solve_speeds
+from kinematics.gear.planetary import GROUND, Speeds, Train, solve_speeds
 from kinematics.gear.power import PowerFlow, solve_power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
-from synthesis.analyses.gears.given_train import GivenRatio
+from synthesis.analyses.gears.given_planetary_train import Body, GivenPlanetaryTrain
 from synthesis.analyses.gears.planet_strength import describe_mesh_strengths, find_strength_errors
 from synthesis.analyses.gears.shift_table import (
     MAX_STATES,
@@ -32,97 +31,8 @@ from synthesis.model.gears.planet_strength import PAIRS_NOTE, PlanetStrength
 from synthesis.model.gears.ratio_target import parse_decimal
 from synthesis.model.gears.request import ExactRatio
 from synthesis.model.gears.strength import PairStrength
-from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
-
-MAX_MESHES = 8
-"""Maximum number of meshes: directions of power are tried mesh by mesh, 2^8 combinations at worst, in half a second."""
-
-ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
-Body = Annotated[str, Field(min_length=1, max_length=40)]
-
-
-class GivenMesh(Statement):
-    """Two gears in mesh: their bodies, the carrier of their axes (``ground`` where it stands still), their teeth."""
-
-    first: Body
-    second: Body
-    carrier: Body
-    first_teeth: ToothCount
-    second_teeth: ToothCount
-    internal: Flag = Field(
-        default=False,
-        description="Whether one gear has internal teeth or is the far side gear of a bevel differential.",
-    )
-
-
-class GivenPlanetaryTrain(Statement):
-    """An arrangement with teeth, or custom meshes. Other fields of a design are accepted, too."""
-
-    type: Literal["planetary_train"]
-    arrangement: str | None = None
-    teeth: dict[str, ToothCount] | None = None
-    meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MAX_MESHES)
-    planet_bodies: list[Body] = Field(
-        default=[], max_length=24, description="Bodies that rotate freely; only with `meshes`."
-    )
-    input: Body | None = None
-    output: Body | None = None
-    fixed: Body | None = None
-    planets: Any = None
-    places: Any = None
-    module: Any = None
-    pressure_angle: Any = None
-    addendum: Any = None
-    face_widths: list[PositiveNumber | None] | None = Field(
-        default=None, max_length=8, description="Face width of each plane, as in a design, for `strength`."
-    )
-    ratio: GivenRatio | None = Field(
-        default=None,
-        description="Ratio, as in a design; compared with that of the teeth if all three members are given.",
-    )
-
-    def build_train(self) -> Train:
-        """Build the speed equations of a valid mechanism."""
-        if self.meshes is None:
-            assert self.arrangement is not None
-            assert self.teeth is not None
-            return ARRANGEMENTS[self.arrangement].build_train(self.teeth)
-        rows = [
-            Mesh(
-                row.first,
-                row.second,
-                row.carrier,
-                row.first_teeth,
-                row.second_teeth,
-                INTERNAL if row.internal else EXTERNAL,
-            )
-            for row in self.meshes
-        ]
-        return Train(tuple(rows), frozenset(self.planet_bodies))
-
-    def compute_ratio(self) -> Fraction | None:
-        """Compute input over output speed with the fixed member at rest; None if a member is not given or none
-        follows."""
-        if self.input is None or self.output is None or self.fixed is None:
-            return None
-        return compute_speed_ratio(self.build_train(), self.input, self.output, [self.fixed])
-
-    def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
-        if self.meshes is not None:
-            if self.arrangement is not None or self.teeth is not None:
-                return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]
-            return [
-                (f"/mechanism/meshes/{k}", "its two gears and their carrier must be three different bodies")
-                for k, row in enumerate(self.meshes)
-                if len({row.first, row.second, row.carrier}) < 3
-            ]
-        if self.arrangement not in ARRANGEMENTS:
-            return [("/mechanism/arrangement", f"expected one of {', '.join(ARRANGEMENTS)}, or meshes")]
-        names = ARRANGEMENTS[self.arrangement].gear_names
-        if set(self.teeth or {}) != set(names):
-            return [("/mechanism/teeth", f"expected teeth for {', '.join(names)}")]
-        return []
+from synthesis.model.json_object import JsonObject
+from synthesis.model.problem import Number
 
 
 class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
@@ -275,7 +185,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             self.mechanism.build_train(), str(self.mechanism.input), str(self.mechanism.output)
         )
 
-    def build_table(self) -> list[dict[str, Any]]:
+    def build_table(self) -> list[JsonObject]:
         """Build the shift table."""
         mechanism = self.mechanism
         train = mechanism.build_train()
@@ -283,7 +193,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             train, mechanism.input, str(mechanism.output), self._list_elements(), self.mesh_efficiency
         )
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the train, in the form of :class:`PlanetaryAnalysis`."""
         return _analyze_train(self)
 
@@ -341,7 +251,7 @@ class PlanetaryAnalysis(DrivenAnalysis):
     drift: Drift | None = optional_field("Given if a required ratio is given.")
 
 
-def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
+def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
     """Compute speeds of all bodies, and torques and powers if the speeds are complete."""
     at, speed, time = request.motion.list_inputs()
     mechanism, train = request.mechanism, request.mechanism.build_train()
@@ -373,9 +283,9 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
                 ),
             }
         )
-    asked: dict[str, Any] = {"shift_table": request.build_table()} if request.include else {}
+    asked: JsonObject = {"shift_table": request.build_table()} if request.include else {}
     # Without loads in the meshes no strength is described, but each mesh keeps its place in the list.
-    strong: list[dict[str, Any] | None] = [None] * len(train.meshes)
+    strong: list[JsonObject | None] = [None] * len(train.meshes)
     if request.strength is not None and flow is not None:
         drive = request.mechanism, request.strength, train, solution.values, flow, float(speed[0])
         strong = describe_mesh_strengths(*drive, request.length_unit)
@@ -405,7 +315,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
 
 def _describe_body(
     train: Train, flow: PowerFlow | None, body: str, rate: Fraction | None, input_speed: float
-) -> dict[str, Any]:
+) -> JsonObject:
     """Return speed, torque and power of a body; ``rate`` is its speed over the input's."""
     loaded = flow is not None and body not in train.planets
     return {
@@ -418,7 +328,7 @@ def _describe_body(
     }
 
 
-def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_speed: float) -> dict[str, Any]:
+def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_speed: float) -> JsonObject:
     """Return torques and powers of a mesh; ``input_speed`` is positive."""
     mesh = train.meshes[number]
     loads = None if flow is None else flow.meshes[number]

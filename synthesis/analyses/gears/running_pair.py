@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -34,6 +34,7 @@ from synthesis.model.gears.answer import LIMIT_TOLERANCE, apply_tool_contact
 from synthesis.model.gears.mesh_limits import DEFAULT_CUTTER_TEETH, choose_cutter_teeth
 from synthesis.model.gears.request import Addendum, PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gears.strength import LoadedPair, PairStrength, StrengthSpec, describe_strength
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
 
 
@@ -262,7 +263,7 @@ class RunningPairRequest(AnalysisRequest):
     )
 
     @classmethod
-    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
         """Build the answer at any input; jobs return no such pairs as designs."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
@@ -293,7 +294,7 @@ class RunningPairRequest(AnalysisRequest):
             faults.append(("/mechanism/face_width", "give it, or the allowable stresses from which it is computed"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the complete answer for the pair, in the form of :class:`RunningPairAnalysis`."""
         given, pair = self.mechanism, self.mechanism.build_pair()
         mesh, angle = pair.contact.mesh, math.radians(given.helix_angle)
@@ -309,7 +310,7 @@ class RunningPairRequest(AnalysisRequest):
         trimmed = None if pair.ring is None else pair.ring.is_trimmed
         backlash = pair.contact.backlash
         bad = interferes or thin or faulty or mesh.tips_foul or bool(trimmed) or pair.compute_clearance < -slack
-        answer: dict[str, Any] = {
+        answer: JsonObject = {
             "ratio": given.teeth[1] / given.teeth[0],
             "centre_distance": mesh.centre_distance,
             "standard_distance": mesh.standard_distance,
@@ -333,7 +334,7 @@ class RunningPairRequest(AnalysisRequest):
             answer["profiles"] = [_describe_space(pair, place, angle) for place in range(2)]
         return answer
 
-    def _describe_strength(self, method: StrengthSpec) -> dict[str, Any]:
+    def _describe_strength(self, method: StrengthSpec) -> JsonObject:
         """Describe the stresses of the pair, computed in millimetres because stresses are in MPa."""
         unit = 1.0 / MILLIMETRE[self.length_unit]
         given = self.mechanism
@@ -371,7 +372,7 @@ def _compute_overlap(given: GivenGearPair, angle: float) -> float | None:
     return given.face_width * math.sin(abs(angle)) / (math.pi * given.module)
 
 
-def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[dict[str, Any]]:
+def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[JsonObject]:
     contact, mesh = pair.contact, pair.contact.mesh
     # Working circles are larger than pitch circles by the ratio of the cosines, as the base circles stay the same.
     wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)

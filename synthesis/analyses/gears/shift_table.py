@@ -11,7 +11,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -19,6 +19,7 @@ from kinematics.gear.planetary import Train, solve_speeds
 from kinematics.gear.power import solve_power_flow
 from synthesis.model.answer import Answer
 from synthesis.model.gears.ratio_target import parse_decimal
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
 
 INPUT_NAME = "input"
@@ -96,8 +97,8 @@ def find_element_errors(train: Train, driving: str | None, elements: Sequence[Gi
             and INPUT_NAME in element.clutch
             and INPUT_NAME in train.members
         ):
-            told = "a member is named input: give it another name, or give the mechanism's input"
-            faults.append((f"{path}/clutch", told))
+            detail = "a member is named input: give it another name, or give the mechanism's input"
+            faults.append((f"{path}/clutch", detail))
     return faults
 
 
@@ -113,7 +114,7 @@ def _count_engaged(train: Train, driving: str | None) -> int:
 
 def build_shift_table(
     train: Train, driving: str | None, driven: str, elements: Sequence[GivenElement], efficiency: float
-) -> list[dict[str, Any]]:
+) -> list[JsonObject]:
     """Build the states of a train as :class:`ShiftState`, largest ratio first, backward ones last.
 
     Parameters
@@ -135,7 +136,7 @@ def build_shift_table(
 
 def _iterate_states(
     train: Train, driving: str | None, driven: str, elements: Sequence[GivenElement], efficiency: float
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[JsonObject]:
     for engaged in itertools.combinations(elements, _count_engaged(train, driving)):
         inputs = [] if driving is None else [driving]
         inputs += [body for element in engaged if (body := element.find_driven_member(driving)) is not None]

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field
 
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
 from synthesis.analyses.gears.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.analyses.gears.given_planetary_train import GivenPlanetaryTrain
 from synthesis.analyses.gears.given_train import GivenGearTrain, GivenRatio
-from synthesis.analyses.gears.planetary_train import GivenPlanetaryTrain, PlanetaryAnalysis, PlanetaryAnalysisRequest
+from synthesis.analyses.gears.planetary_train import PlanetaryAnalysis, PlanetaryAnalysisRequest
 from synthesis.model.answer import optional_field
 from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.request import ExactRatio
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number, Statement
 
 GivenUnit = Annotated[GivenPlanetaryTrain | GivenGearTrain, Discriminator("type")]
@@ -114,7 +116,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
         """Whether power leaves at the input at the first position: the output drives."""
         return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the series, in the form of :class:`TrainSeriesAnalysis`."""
         return _analyze_series(self)
 
@@ -147,19 +149,19 @@ class TrainSeriesAnalysis(DrivenAnalysis):
     drift: Drift | None = optional_field("Given if a required ratio is given.")
 
 
-def _analyze_series(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
+def _analyze_series(request: TrainSeriesAnalysisRequest) -> JsonObject:
     at, speed, time = request.motion.list_inputs()
     share, power = Fraction(1), 1.0
     back = request.has_backward_flow
     shafts = [{"speed_ratio": 1.0, "torque": request.input_torque, **request.motion.drive_geared(1.0, at, speed)}]
-    units: list[dict[str, Any]] = []
+    units: list[JsonObject] = []
     known = True
     for unit in request.mechanism.units:
-        told = _analyze_unit(request, unit, back)
-        units.append(told)
+        unit_answer = _analyze_unit(request, unit, back)
+        units.append(unit_answer)
         # Units report input over output speed, but shafts have their speed over the input's: its inverse.
         share /= compute_unit_ratio(unit)
-        passed = told["efficiency"]
+        passed = unit_answer["efficiency"]
         # If the output drives, more power enters there than leaves at the input.
         known = known and passed is not None and not (back and passed == 0.0)
         # Once a unit's efficiency is unknown, so are the torques on all later shafts.
@@ -174,14 +176,14 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
                 **request.motion.drive_geared(turning, at, speed),
             }
         )
-    efficiencies = [told["efficiency"] for told in units]
+    efficiencies = [unit_answer["efficiency"] for unit_answer in units]
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
         "valid": [True] * len(at),
         "ratio": Ratio.from_fraction(1 / share).model_dump(),
         "efficiency": None if None in efficiencies else math.prod(efficiencies),
-        "self_locking": any(told.get("self_locking") for told in units),
+        "self_locking": any(unit_answer.get("self_locking") for unit_answer in units),
         "shafts": shafts,
         "units": units,
         **describe_drift(1 / share, request.wanted_ratio),
@@ -195,10 +197,10 @@ def _choose_torque(back: bool) -> float:
 
 def _analyze_unit(
     request: TrainSeriesAnalysisRequest, unit: GivenGearTrain | GivenPlanetaryTrain, back: bool
-) -> dict[str, Any]:
+) -> JsonObject:
     """Analyze a unit alone, its input at speed 1 and with torque 1, or −1 if the output drives."""
     torque = _choose_torque(back)
-    stated: dict[str, Any] = {
+    stated: JsonObject = {
         "mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency,
     }  # fmt: skip
     if isinstance(unit, GivenPlanetaryTrain):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.arrays import Real
+from kinematics.arrays import Numbers, Real
 from kinematics.dynamics.reactions import Reactions
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms.flywheel import (
@@ -20,6 +18,7 @@ from synthesis.mechanisms.flywheel import (
 )
 from synthesis.model.dynamics.loads import FULL_TURN
 from synthesis.model.dynamics.request import FlywheelSpec
+from synthesis.model.json_object import JsonObject
 
 CYCLE_TOLERANCE = 1e-9
 """Tolerance of a closed motion, as a share of a cycle: rounding."""
@@ -56,7 +55,7 @@ def compute_rms(values: Real, closed: bool) -> float | None:
     return None if squared is None else math.sqrt(squared)
 
 
-def _compute_orders(values: NDArray[Any], turns: float) -> list[tuple[str, complex, complex]]:
+def _compute_orders(values: Numbers, turns: float) -> list[tuple[str, complex, complex]]:
     """Compute Fourier coefficients of values over a closed run of ``turns`` turns, for each order and its negative."""
     count = len(values) - 1
     found = np.fft.fft(values[:-1]) / count
@@ -64,7 +63,7 @@ def _compute_orders(values: NDArray[Any], turns: float) -> list[tuple[str, compl
     return [(f"{k / turns:.10g}", complex(found[k]), complex(found[-k])) for k in range(1, most + 1)]
 
 
-def describe_harmonics(found: Reactions, at: Real, closed: bool) -> dict[str, Any]:
+def describe_harmonics(found: Reactions, at: Real, closed: bool) -> JsonObject:
     """Describe harmonics as :class:`synthesis.model.dynamics.answer.Harmonics`; phases are those at input angle 0."""
     parts = {"shaking_force": found.shaking_force, "shaking_moment": found.shaking_moment, "drive": found.drive}
     if not closed or not all(np.isfinite(values).all() for values in parts.values()):
@@ -90,14 +89,14 @@ def describe_harmonics(found: Reactions, at: Real, closed: bool) -> dict[str, An
     return {"shaking_force": force, **waves}
 
 
-def describe_flywheel(drive: Real, at: Real, speed: float, closed: bool, wanted: FlywheelSpec | None) -> dict[str, Any]:
+def describe_flywheel(drive: Real, at: Real, speed: float, closed: bool, wanted: FlywheelSpec | None) -> JsonObject:
     """Describe the flywheel as :class:`synthesis.model.dynamics.answer.Flywheel`."""
     if not closed or not np.isfinite(drive).all():
         sized = {} if wanted is None else dict.fromkeys(("inertia", "inertia_exact", "coefficient_exact"))
         return {"energy": None, "mean_torque": None, **sized, "pulses": []}
     angle, torque = (at, drive) if at[-1] > at[0] else (at[::-1], drive[::-1])
     found = compute_fluctuation(np.radians(angle), torque)
-    answer: dict[str, Any] = {"energy": found.energy, "mean_torque": found.mean}
+    answer: JsonObject = {"energy": found.energy, "mean_torque": found.mean}
     if wanted is not None and speed != 0.0:
         whole = compute_first_order_inertia(found.energy, abs(speed), wanted.coefficient)
         exact = find_exact_inertia(found, abs(speed), wanted.coefficient)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from synthesis.analyses.linkages.peaks import Peak, Samples, find_peaks
 from synthesis.mechanisms.courses import find_period_turns
 from synthesis.mechanisms.machine import build_machine, find_first_fixed_pivot
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit, LoadedLinkage
+from synthesis.model.json_object import JsonObject
 
 HIGH_INDEX = 2.0
 """Joint force index above which the client is warned (Norton, Sec. 11.12)."""
@@ -56,7 +57,7 @@ class DrivenMachine(NamedTuple):
 
 def analyze_forces(
     mechanism: Mechanism, block: DynamicsBlock, unit: LengthUnit, at: Real, speed: Real, acceleration: float
-) -> dict[str, Any]:
+) -> JsonObject:
     """Build the answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
     machine, warnings = build_machine(block, mechanism, unit)
     indexed = block.is_reported("joint_force_index")
@@ -66,7 +67,7 @@ def analyze_forces(
     drive_peaks, extremes = _find_extremes(machine, course, at, acceleration, closed, block.minimum_norm)
     reported = _list_reported_joints(machine)
     power = found.drive * course.speed
-    answer: dict[str, Any] = {"units": block.units, "length_unit": unit}
+    answer: JsonObject = {"units": block.units, "length_unit": unit}
     if block.is_reported("drive"):
         answer["drive"] = found.drive.tolist()
         answer["virtual_work_drive"] = np.where(found.solved, check.drive, np.nan).tolist()
@@ -94,8 +95,8 @@ def analyze_forces(
         answer["harmonics"] = describe_harmonics(found, at, closed)
     if course.force_index is not None:
         answer["joint_force_index"] = course.force_index.tolist()
-        answer["max_joint_force_index"], told = _find_largest_index(course, extremes)
-        warnings = warnings + told
+        answer["max_joint_force_index"], index_warnings = _find_largest_index(course, extremes)
+        warnings = warnings + index_warnings
     return answer | {"status": _list_status(course), "checks": _compare_routes(found, check), "warnings": warnings}
 
 
@@ -130,10 +131,10 @@ def find_force_peaks(
     return closed, peaks | {"drive": max(greatest, least)}
 
 
-def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[str], rubbing: bool) -> dict[str, Any]:
+def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[str], rubbing: bool) -> JsonObject:
     """List forces in joints, slides and gears, and friction."""
     found, slides = course.reactions, machine.mechanism.slides
-    answer: dict[str, Any] = {
+    answer: JsonObject = {
         "joints": {
             joint: {link: _list_series(force) for link, force in on.items()}
             for joint, on in found.joints.items()
@@ -148,7 +149,7 @@ def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[s
     return answer | ({"friction": _describe_friction(course)} if rubbing else {})
 
 
-def _find_largest_index(course: DrivenMachine, extremes: dict[str, Any]) -> tuple[float | None, list[str]]:
+def _find_largest_index(course: DrivenMachine, extremes: JsonObject) -> tuple[float | None, list[str]]:
     """Find the largest joint force index, None if a dead centre makes it infinite; also return warnings."""
     dead = course.valid & ~(course.reactions.condition < MAX_CONDITION) & course.reactions.determined
     if dead.any():
@@ -187,7 +188,7 @@ def _slow_motion(paced: MechanismMotion, scale: float) -> MechanismMotion:
     """Rescale the motion to an input speed of 1 in the unit that is ``scale`` of the mechanism's."""
     powers = scale ** -np.arange(3.0)
 
-    def scale_jets(jets: dict[str, Any]) -> dict[str, Any]:
+    def scale_jets(jets: JsonObject) -> JsonObject:
         return {name: jet * powers.reshape(3, *(1 for _ in jet.shape[1:])) for name, jet in jets.items()}
 
     return MechanismMotion(
@@ -225,7 +226,7 @@ def _list_slide_frictions(found: Reactions) -> list[Real]:
     return frictions
 
 
-def _describe_friction(course: DrivenMachine) -> dict[str, Any]:
+def _describe_friction(course: DrivenMachine) -> JsonObject:
     pins: dict[str, dict[str, Real]] = {}
     for contact, friction in zip(course.reactions.rubbing.contacts, course.reactions.rubbing.frictions, strict=True):
         if contact.slide < 0:
@@ -268,7 +269,7 @@ def _list_quantities(machine: Machine, course: DrivenMachine) -> Samples:
 
 def _find_extremes(
     machine: Machine, course: DrivenMachine, at: Real, acceleration: float, closed: bool, minimum_norm: bool = False
-) -> tuple[dict[str, Any], dict[str, Any]]:
+) -> tuple[JsonObject, JsonObject]:
     """Find the extremes of the drive, and of every other quantity by name."""
 
     def measure(inputs: Real, speeds: Real, machine: Machine) -> Samples:

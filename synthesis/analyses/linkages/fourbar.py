@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -37,6 +37,7 @@ from kinematics.linkage.fourbar import (
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from synthesis.mechanisms import GivenFourbar, GivenGearedFivebar, GivenSkeleton, MechanismError
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Point
 
 Topic = Literal["cognates", "centrodes", "curvature", "coupler_curve"]
@@ -144,7 +145,7 @@ def extract_fourbar(mechanism: Mechanism) -> AssembledFourbar | None:
     return AssembledFourbar(linkage, CROSSED_ASSEMBLY if ((o4 - a).conjugate() * (b - a)).imag < 0.0 else OPEN_ASSEMBLY)
 
 
-def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dict[str, Any]:
+def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> JsonObject:
     """Compute the requested results over input angles in radians, in the form of :class:`FourbarAnalysis`.
 
     Raises
@@ -156,7 +157,7 @@ def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dict
     if stated is None:
         raise MechanismError("", f"only a pin-jointed fourbar has {' and '.join(topics)}")
     reference = float(mechanism.reference_input)
-    make: dict[Topic, Callable[[], dict[str, Any]]] = {
+    make: dict[Topic, Callable[[], JsonObject]] = {
         "cognates": lambda: _describe_cognates(stated, reference),
         "centrodes": lambda: _describe_centrodes(stated, at),
         "curvature": lambda: _describe_curvature(stated, at),
@@ -168,7 +169,7 @@ def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dict
         raise MechanismError("", "the coupler point lies on a moving pivot: its curve is a circle") from None
 
 
-def _describe_cognates(assembled: AssembledFourbar, reference: float) -> dict[str, Any]:
+def _describe_cognates(assembled: AssembledFourbar, reference: float) -> JsonObject:
     """Describe the two cognates of Roberts and Chebyshev and the geared fivebar of the same curve as mechanisms."""
     linkage, assembly = assembled
     pair = build_cognates(linkage)
@@ -207,7 +208,7 @@ def _describe_cognates(assembled: AssembledFourbar, reference: float) -> dict[st
     }
 
 
-def _describe_cognate(cognate: Cognate, reference: float, assembly: int) -> dict[str, Any]:
+def _describe_cognate(cognate: Cognate, reference: float, assembly: int) -> JsonObject:
     linkage, here = cognate.linkage, cognate.configuration(reference, assembly)
     return {
         "type": "fourbar",
@@ -226,7 +227,7 @@ def _describe_cognate(cognate: Cognate, reference: float, assembly: int) -> dict
     }
 
 
-def _build_parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> dict[str, Any]:
+def _build_parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> JsonObject:
     """Build the sixbar whose link moves parallel to itself along the coupler curve."""
     translating = build_parallel_motion(linkage)
     o2 = complex(linkage.input_pivot)
@@ -257,12 +258,12 @@ def _build_parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex)
     }
 
 
-def _describe_centrodes(assembled: AssembledFourbar, at: Real) -> dict[str, Any]:
+def _describe_centrodes(assembled: AssembledFourbar, at: Real) -> JsonObject:
     poles = find_pole(assembled.linkage, at, assembled.assembly)
     return {"fixed": _list_points(poles.point), "moving": _list_points(np.where(poles.finite, poles.moving, np.nan))}
 
 
-def _describe_curvature(assembled: AssembledFourbar, at: Real) -> dict[str, Any]:
+def _describe_curvature(assembled: AssembledFourbar, at: Real) -> JsonObject:
     path = compute_path_curvature(assembled.linkage, at, assembled.assembly)
     circle = find_pole(assembled.linkage, at, assembled.assembly)
     return {
@@ -273,7 +274,7 @@ def _describe_curvature(assembled: AssembledFourbar, at: Real) -> dict[str, Any]
     }
 
 
-def _describe_coupler_curve(linkage: Fourbar) -> dict[str, Any]:
+def _describe_coupler_curve(linkage: Fourbar) -> JsonObject:
     coefficients, double = compute_sextic_coefficients(linkage), find_double_points(linkage)
     listed = []
     for n in np.flatnonzero(double.valid):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import find_cycle_from_reference
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.linkages.cycle import find_cycle
+from synthesis.model.json_object import JsonObject
 from synthesis.model.layout import LayoutSizes
 from synthesis.model.linkage.answer import Layout, LayoutClash
 
@@ -81,7 +81,7 @@ def lay_out_range(mechanism: Mechanism, requested: LayoutSizes, used: tuple[floa
     unit = 1.0 if slides else 180.0 / math.pi
     free = None if found.free is None else (unit * found.free[0], unit * found.free[1])
 
-    def place(at: float) -> dict[str, Any]:
+    def place(at: float) -> JsonObject:
         return {"input_place": at} if slides else {"input_angle": math.degrees(at)}
 
     return Layout(

@@ -7,7 +7,7 @@ assembled, ``valid`` is False and the numbers are NaN, which become null in JSON
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
@@ -32,6 +32,7 @@ from synthesis.mechanisms.skeleton import describe_skeleton
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dynamics.answer import DynamicsAnswer
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.layout import LayoutSizes
 from synthesis.model.linkage.answer import Layout, Skeleton
 from synthesis.model.linkage.given_linkage import CouplerPointSpec
@@ -127,7 +128,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
                 faults.append(("/dynamics/flywheel", "a flywheel needs a speed"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.build_mechanism()
         if decompose(mechanism).left and estimate_effort(mechanism) > MAX_EFFORT:
@@ -186,7 +187,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
         return width
 
     @classmethod
-    def analyze_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+    def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
         """Build the answer from the first target on, through a full turn or from toggle to toggle."""
         given = _GIVEN_ADAPTER.validate_python(mechanism).build_mechanism()
         low, high = find_cycle(given)

@@ -6,7 +6,6 @@ The mechanism is parsed here and not in the models of the problem, because it ne
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from pydantic import ValidationError
 
@@ -17,12 +16,11 @@ from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.link_bodies import escape_pointer
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit, LoadedLinkage
 from synthesis.model.error_path import select_given_steps
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import Sweep
 
 
-def build_loaded_request(
-    mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit
-) -> LinkageAnalysisRequest:
+def build_loaded_request(mechanism: JsonObject, dynamics: LoadedLinkage, unit: LengthUnit) -> LinkageAnalysisRequest:
     """Build the analysis request for a mechanism with masses and loads.
 
     Raises
@@ -35,7 +33,7 @@ def build_loaded_request(
 
 
 def find_loaded_errors(
-    mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit, *, shaft: bool = False
+    mechanism: JsonObject, dynamics: LoadedLinkage, unit: LengthUnit, *, shaft: bool = False
 ) -> list[tuple[str, str]]:
     """List errors as (JSON pointer, detail) below /mechanism or /dynamics; with ``shaft`` a crank must drive."""
     try:
@@ -62,7 +60,7 @@ def find_loaded_errors(
 
 
 def find_driven_errors(
-    mechanism: dict[str, Any], dynamics: LoadedLinkage, unit: LengthUnit, motion: Sweep
+    mechanism: JsonObject, dynamics: LoadedLinkage, unit: LengthUnit, motion: Sweep
 ) -> tuple[Mechanism | None, list[tuple[str, str]]]:
     """Return the mechanism to be driven over a motion, None if it is invalid, and the errors."""
     faults = find_loaded_errors(mechanism, dynamics, unit)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +22,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.planar.program import build_program
 from synthesis.analyses.linkages.cycle import list_branches
 from synthesis.analyses.linkages.fourbar import extract_fourbar
+from synthesis.model.json_object import JsonObject
 
 BRANCH_SAMPLE_COUNT = 181
 """Number of samples on a branch at which its joints are listed: enough for a smooth curve on a screen."""
@@ -36,7 +36,7 @@ def analyze_motion(
     *,
     tracked: bool = False,
     points: Mapping[str, tuple[str, complex]] = MappingProxyType({}),
-) -> dict[str, Any]:
+) -> JsonObject:
     """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it.
 
     ``tracked`` adds to each branch where the joints are along it; ``points`` are further points by link and place.
@@ -133,7 +133,7 @@ def _list_output_slides(mechanism: Mechanism) -> list[str]:
     return [name for name, slide in named if slide.link == GROUND and slide.joint != mechanism.input]
 
 
-def _classify_linkage(mechanism: Mechanism) -> dict[str, Any]:
+def _classify_linkage(mechanism: Mechanism) -> JsonObject:
     kind = 0
     stated = extract_fourbar(mechanism)
     if stated is not None:
@@ -184,7 +184,7 @@ def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[st
     return notes
 
 
-def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, Any]:
+def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) -> JsonObject:
     """Describe toggles, circuits and limits; empty with a note if the circuits cannot be listed."""
     try:
         branches = list_branches(mechanism)
@@ -194,7 +194,7 @@ def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) ->
     here = find_reference_branch(mechanism, branches)
     if here is None:
         notes = [*notes, "limits: the reference lies where several branches meet, or on none"]
-    circuits: dict[int, list[dict[str, Any]]] = {}
+    circuits: dict[int, list[JsonObject]] = {}
     for branch in branches:
         listed = circuits.setdefault(branch.circuit, [])
         one = {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from synthesis.analyses.linkages.cycle import find_cycle
 from synthesis.analyses.linkages.loaded_mechanism import build_loaded_request
 from synthesis.mechanisms.machine import build_machine
 from synthesis.model.dynamics.request import DynamicsBlock, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import FULL_TURN, Sweep
 
 CYCLE_TOLERANCE = 1e-9
@@ -44,7 +45,7 @@ class Task(NamedTuple):
         return np.asarray(np.linspace(self.start, self.end, count, endpoint=not self.is_closed))
 
 
-def build_task(statement: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep) -> Task:
+def build_task(statement: JsonObject, dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep) -> Task:
     """Build the machine of a consistent problem, and its motion."""
     request = build_loaded_request(statement, dynamics, unit)
     mechanism = request.mechanism.build_mechanism()

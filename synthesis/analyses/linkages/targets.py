@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from kinematics.linkage.variation import measure_deviations
 from synthesis.manufacture.linkage import Linkage, build_task, extract_linkage, find_target_inputs
 from synthesis.manufacture.report import report_manufacture
+from synthesis.mechanisms import GivenMechanism
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.targets import MetTarget, TargetSpec
 from synthesis.model.manufacture.request import Exactness, ManufactureTask, RequiredTargets
 
@@ -21,7 +22,9 @@ SAMPLE_COUNT = 1440
 UNSUPPORTED_MESSAGE = "only fourbars and slider-cranks given by their dimensions and driven by the crank are supported"
 
 
-def find_target_errors(mechanism: Any, targets: Sequence[TargetSpec], block: Exactness | None) -> list[tuple[str, str]]:
+def find_target_errors(
+    mechanism: GivenMechanism, targets: Sequence[TargetSpec], block: Exactness | None
+) -> list[tuple[str, str]]:
     """List errors that no single field shows: (path, detail)."""
     if not targets:
         return [("/targets", "missing: the analysis of manufacture needs targets")] if block is not None else []
@@ -50,7 +53,7 @@ def find_target_errors(mechanism: Any, targets: Sequence[TargetSpec], block: Exa
     return faults + [(f"/manufacture{path}", detail) for path, detail in block.find_task_errors(made)]
 
 
-def analyze_targets(mechanism: Any, targets: Sequence[TargetSpec], block: Exactness | None) -> dict[str, Any]:
+def analyze_targets(mechanism: GivenMechanism, targets: Sequence[TargetSpec], block: Exactness | None) -> JsonObject:
     """Measure a linkage's errors at its targets and its manufacturing results: fields of the answer.
 
     Parameters
@@ -66,7 +69,7 @@ def analyze_targets(mechanism: Any, targets: Sequence[TargetSpec], block: Exactn
     assert linkage is not None
     held = _find_nearest_inputs(linkage, _build_requirements(mechanism, linkage, targets))
     found = find_target_inputs(linkage, held, (held.size, 1.0), None)
-    met: list[dict[str, Any]] = []
+    met: list[JsonObject] = []
     if not isinstance(found, str):
         off = np.degrees(found[1][:, 2])
         distances = np.hypot(found[1][:, 0], found[1][:, 1])
@@ -79,18 +82,18 @@ def analyze_targets(mechanism: Any, targets: Sequence[TargetSpec], block: Exactn
                 angle = abs(float(off[k])) if targets[0].sort == "poses" else None
                 target = target.model_copy(update={"point_residual": float(distances[k]), "angle_residual": angle})
             met.append(target.model_dump())
-    answer: dict[str, Any] = {"targets": met}
+    answer: JsonObject = {"targets": met}
     if block is None:
         return answer
     used = float(held.inputs.min()), float(held.inputs.max())
-    told = report_manufacture(mechanism, held, block, 0, used)
-    answer["manufacture"] = told.manufactured.model_dump()
-    if told.yield_ is not None:
-        answer["yield"] = told.yield_.model_dump()
+    report = report_manufacture(mechanism, held, block, 0, used)
+    answer["manufacture"] = report.manufactured.model_dump()
+    if report.yield_ is not None:
+        answer["yield"] = report.yield_.model_dump()
     return answer
 
 
-def _build_requirements(mechanism: Any, linkage: Linkage, targets: Sequence[TargetSpec]) -> RequiredTargets:
+def _build_requirements(mechanism: GivenMechanism, linkage: Linkage, targets: Sequence[TargetSpec]) -> RequiredTargets:
     """Build the requirements from the targets; inputs that are left out are NaN."""
     inputs = np.radians([math.nan if target.input_angle is None else target.input_angle for target in targets])
     if targets[0].sort == "outputs":

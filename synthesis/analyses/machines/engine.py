@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field
 from kinematics.engine.pistons import compute_piston_motion
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Degrees, PositiveLength, Statement
 
 
@@ -18,9 +19,9 @@ class GivenCylinder(Statement):
 
     axis: Degrees = 0.0
     phase: Degrees = 0.0
-    number: Any = None
-    throw: Any = None
-    place: Any = None
+    number: object = None
+    throw: object = None
+    place: object = None
 
 
 class GivenEngine(Statement):
@@ -30,8 +31,8 @@ class GivenEngine(Statement):
     crank: PositiveLength = Field(description="Radius of the crank throws.")
     rod: PositiveLength
     cylinders: Annotated[list[GivenCylinder], Field(min_length=1, max_length=24)]
-    layout: Any = None
-    throws: Any = None
+    layout: object = None
+    throws: object = None
 
 
 class PistonMotion(Answer):
@@ -77,7 +78,7 @@ class EngineAnalysisRequest(DrivenRequest[GivenEngine]):
             faults.append(("/mechanism/rod", "the rod must be longer than the crank's radius"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the engine, in the form of :class:`EngineAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         cylinders = []

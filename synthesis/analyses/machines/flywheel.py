@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.dimension import DENSITY, LENGTH
 from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import NonNegative, PositiveLength, PositiveNumber, Statement
 
 
@@ -17,7 +18,7 @@ class GivenFlywheel(Statement):
     """A wheel of one thickness about its shaft."""
 
     type: Literal["flywheel"]
-    form: Any = None
+    form: object = None
     radius: PositiveLength
     inner_radius: Annotated[NonNegative, LENGTH] = 0.0
     thickness: PositiveLength
@@ -69,7 +70,7 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
             faults.append(("/mechanism/inner_radius", "must be below the outer radius"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the flywheel, in the form of :class:`FlywheelAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         scale = METRES_PER_UNIT[self.length_unit] if self.units == "si" else 1.0

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.geneva import build_drive
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
 
 ENTRY_TOLERANCE = 1e-9
@@ -24,8 +25,8 @@ class GivenDragLink(Statement):
     coupler: PositiveLength
     output: PositiveLength
     crank_offset: Degrees = Field(default=0.0, description="Angle from the output to the crank.")
-    input_pivot: Any = None
-    entry_angle: Any = None
+    input_pivot: object = None
+    entry_angle: object = None
 
 
 class GivenGeneva(Statement):
@@ -44,21 +45,21 @@ class GivenGeneva(Statement):
         "for shock-free entry.",
     )
     drag_link: GivenDragLink | None = None
-    sphere_radius: Any = None
-    roller_diameter: Any = None
-    wheel_radius: Any = None
-    ring_radius: Any = None
-    slot_width: Any = None
-    slot_end_radius: Any = None
-    slot_end_angle: Any = None
-    locking_radius: Any = None
-    locking_arc_radius: Any = None
-    cap_angle: Any = None
-    cap_offset: Any = None
-    locking_arc_angle: Any = None
-    bore: Any = None
-    profile: Any = None
-    disc: Any = None
+    sphere_radius: object = None
+    roller_diameter: object = None
+    wheel_radius: object = None
+    ring_radius: object = None
+    slot_width: object = None
+    slot_end_radius: object = None
+    slot_end_angle: object = None
+    locking_radius: object = None
+    locking_arc_radius: object = None
+    cap_angle: object = None
+    cap_offset: object = None
+    locking_arc_angle: object = None
+    bore: object = None
+    profile: object = None
+    disc: object = None
 
 
 class GenevaAnalysis(DrivenAnalysis):
@@ -109,7 +110,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
             faults += _find_drag_link_errors(given.drag_link)
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the drive, in the form of :class:`GenevaAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         course, rollers = build_drive(self.mechanism), self.mechanism.rollers

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field
 from kinematics.indexing.ratchet import Ratchet
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
 
 
@@ -18,8 +19,8 @@ class GivenPawl(Statement):
     """A pawl: angle of the wheel beyond its first stop at which this pawl first holds it, degrees."""
 
     stop: Degrees = 0.0
-    pivot: Any = None
-    nose: Any = None
+    pivot: object = None
+    nose: object = None
 
 
 class GivenRatchet(Statement):
@@ -32,10 +33,10 @@ class GivenRatchet(Statement):
     face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False)] = 0.0
     pawl_length: PositiveLength = Field(description="Distance from the middle of the held face to the pawl's pivot.")
     pawls: list[GivenPawl] = Field(default_factory=lambda: [GivenPawl()], min_length=1, max_length=64)
-    stations: Any = None
-    overlap: Any = None
-    bore: Any = None
-    profile: Any = None
+    stations: object = None
+    overlap: object = None
+    bore: object = None
+    profile: object = None
 
 
 class PawlMotion(Answer):
@@ -82,7 +83,7 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
             faults.append(("/mechanism/pawl_length", "must be above half the length of a tooth's face"))
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer for the ratchet, in the form of :class:`RatchetAnalysis`."""
         at, _, time = self.motion.list_inputs()
         ratchet = self._build_ratchet()

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from kinematics.arrays import Complex
 from kinematics.dynamics.rotor import compute_bearing_moments
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
 from synthesis.model.dimension import UNBALANCE
 from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Coordinate, Degrees, Flag, NonNegative, Statement
 
 GRAM_MILLIMETRES = 1e-6
@@ -32,9 +34,9 @@ class GivenCorrection(GivenUnbalance):
     """A mass that is added, or taken away, to balance the rotor."""
 
     removed: Flag = False
-    plane: Any = None
-    mass: Any = None
-    radius: Any = None
+    plane: object = None
+    mass: object = None
+    radius: object = None
 
 
 class GivenRotor(Statement):
@@ -46,7 +48,7 @@ class GivenRotor(Statement):
     bearings: tuple[Coordinate, Coordinate] | None = Field(
         default=None, description="Positions of the bearings along the axis."
     )
-    planes: Any = None
+    planes: object = None
 
 
 class RotorRequest(DrivenRequest[GivenRotor]):
@@ -84,7 +86,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         same = [("/mechanism/bearings", "two bearings at the same position cannot carry a couple")] if alike else []
         return [*super().find_errors(), *same]
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`RotorAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         given, si = self.mechanism, self.units == "si"
@@ -122,7 +124,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         }
 
 
-def _list_series(values: Any) -> dict[str, list[float]]:
+def _list_series(values: Complex) -> dict[str, list[float]]:
     return {"x": values.real.tolist(), "y": values.imag.tolist()}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -18,6 +18,7 @@ from kinematics.linkage.universal_joint import (
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.input_motion import StatedMotion, Sweep
 from synthesis.model.answer import Answer
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import MAX_MAGNITUDE, NonNegative, Number, Statement
 
 SPEED_TOLERANCE = 1e-12
@@ -97,7 +98,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
             )
         return faults
 
-    def build_answer(self) -> dict[str, Any]:
+    def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`UniversalJointAnalysis`."""
         at, speed, time = self.motion.list_inputs()
         joints = self.mechanism.build_core()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -164,7 +164,7 @@ class BodySpec(Statement):
 
     @model_validator(mode="after")
     def _validate_form(self) -> Self:
-        given: list[Any] = [self.mass, self.cg, self.inertia]
+        given: list[object] = [self.mass, self.cg, self.inertia]
         if self.shape is not None:
             if given != [None, None, None]:
                 raise ValueError("give the mass properties or a shape, not both")

@@ -73,6 +73,9 @@ class FlywheelSpec(Statement):
     )
 
 
+ForceQuantity = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
+"""Quantities of a linkage's forces that can be limited (docs/mechanisms/dynamics.md)."""
+
 Reported = Literal["joint_forces", "drive", "shaking", "flywheel", "joint_force_index", "harmonics"]
 
 ALWAYS_REPORTED: tuple[Reported, ...] = ("joint_forces", "drive", "shaking")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from fractions import Fraction
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from pydantic import Field
 
@@ -17,6 +17,7 @@ from kinematics.gear.train import OrdinaryTrain, StageKind, TrainStage
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gears.mesh_limits import choose_cutter_teeth
+from synthesis.model.json_object import JsonObject
 
 LIMIT_TOLERANCE = 1e-9
 """Tolerance of a limit of teeth, as a share of the module or the centre distance: rounding of teeth exactly on it."""
@@ -245,15 +246,15 @@ def _describe_standard_mesh(stage: int, driver: int, driven: int, mesh: Mesh, sh
     )
 
 
-def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> dict[str, Any]:
+def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> JsonObject:
     """Return the fields of the mesh that differ from, or are added to, those of external spur gears."""
     if stage.kind == "external":
         return {}
-    told: dict[str, Any] = {"type": stage.kind}
+    block: JsonObject = {"type": stage.kind}
     if stage.kind == "bevel":
         pair = stage.cones(pressure_angle)
         radii, cones, virtual = pair.pitch_radii, pair.cones, pair.virtual_teeth
-        return told | {
+        return block | {
             "centre_distance": 0.0,
             "suggested_shift": None,
             "pitch_diameter": GearLengths(driver=2.0 * radii[0], driven=2.0 * radii[1]),
@@ -262,23 +263,23 @@ def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -
             "virtual_teeth": GearNumbers(driver=virtual[0], driven=virtual[1]),
         }
     one, two = stage.cut_gears(pressure_angle)
-    told["pitch_diameter"] = GearLengths(driver=2.0 * one.pitch_radius, driven=2.0 * two.pitch_radius)
+    block["pitch_diameter"] = GearLengths(driver=2.0 * one.pitch_radius, driven=2.0 * two.pitch_radius)
     if stage.kind == "internal":
-        told["addendum"] = GearNumbers(driver=one.addendum, driven=two.addendum)
-        told["interferes"] = mesh.interferes or is_fillet_reached(mesh)
-        told["ring_trimmed"] = shape_ring(mesh).is_trimmed
-        return told
+        block["addendum"] = GearNumbers(driver=one.addendum, driven=two.addendum)
+        block["interferes"] = mesh.interferes or is_fillet_reached(mesh)
+        block["ring_trimmed"] = shape_ring(mesh).is_trimmed
+        return block
     gear = HelicalGear(stage.driver, stage.module, stage.helix_angle, pressure_angle)
     angle, shrunk = round(math.degrees(stage.helix_angle), SHOWN_DECIMALS), math.cos(stage.helix_angle) ** 3
-    told |= {
+    block |= {
         "helix_angle": GearAngles(driver=angle, driven=-angle),
         "transverse_module": gear.transverse_module,
         "virtual_teeth": GearNumbers(driver=stage.driver / shrunk, driven=stage.driven / shrunk),
     }
     if stage.face_width is not None:
         overlap = stage.face_width / gear.axial_pitch
-        told |= {"overlap_ratio": overlap, "total_contact_ratio": mesh.contact_ratio + overlap}
-    return told
+        block |= {"overlap_ratio": overlap, "total_contact_ratio": mesh.contact_ratio + overlap}
+    return block
 
 
 def _describe_worm_mesh(number: int, stage: TrainStage, pressure_angle: float) -> MeshGeometry:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
@@ -18,6 +18,7 @@ from kinematics.gear.arrangements import Arrangement
 from kinematics.gear.flanks import Contact
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.model.gears.strength import CarriedPower, LoadedPair, StrengthMethod, describe_strength
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
 
 MAX_EQUAL_PLANETS = 3
@@ -142,7 +143,7 @@ def describe_strengths(
     method: PlanetStrength | PlanetPower,
     faces: Sequence[float | None] | None,
     unit: float,
-) -> list[dict[str, Any] | None]:
+) -> list[JsonObject | None]:
     """Describe the strength of every mesh by the fields of ``PairStrength``; None for an unloaded mesh.
 
     Parameters
@@ -160,7 +161,7 @@ def describe_strengths(
     teeth = [(int(gears[one].teeth), int(gears[other].teeth)) for one, other in arrangement.meshes]
     carried = compute_powers(loads, teeth, sharing / planets)
     bent = mark_bent_both_ways(arrangement, loads)
-    found: list[dict[str, Any] | None] = []
+    found: list[JsonObject | None] = []
     for mesh, load, power, ways in zip(arrangement.meshes, loads, carried, bent, strict=True):
         if power == 0.0:
             found.append(None)

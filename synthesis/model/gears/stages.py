@@ -13,6 +13,7 @@ from kinematics.gear.bevel import BevelCones
 from kinematics.gear.train import USUAL_FRICTION, USUAL_QUOTIENT, StageKind, TrainStage
 from synthesis.model.dimension import ANGLE
 from synthesis.model.gears import mesh_limits
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import PositiveLength, Statement
 
 RIGHT_ANGLE = 90.0
@@ -33,7 +34,7 @@ FIELD_STAGE_TYPES: dict[str, tuple[StageKind, ...]] = {
 }
 """Types of stages that have each field."""
 
-DEFAULT_VALUES: dict[str, Any] = {
+DEFAULT_VALUES: JsonObject = {
     "shaft_angle": RIGHT_ANGLE,
     "diameter_quotient": USUAL_QUOTIENT,
     "hand": "right",

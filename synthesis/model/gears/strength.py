@@ -10,7 +10,7 @@ import math
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -24,6 +24,7 @@ from synthesis.model.answer import Answer, optional_field
 from synthesis.model.counting import format_count
 from synthesis.model.dimension import ROTATIONAL_SPEED, Length
 from synthesis.model.gears.answer import apply_tool_contact
+from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import PositiveNumber, Statement
 
 Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
@@ -292,7 +293,7 @@ class Stresses(NamedTuple):
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
-    gears: list[dict[str, Any]]
+    gears: list[JsonObject]
     sharing: float | None = None
 
     def select_safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
@@ -383,14 +384,14 @@ class StressCalculator:
 
     def _build_gear_row(
         self, place: int, form: float | None, size: float | None, bent: float | None, pressed: float | None
-    ) -> dict[str, Any]:
+    ) -> JsonObject:
         bending, contact = self._stated.allowable_bending, self._stated.allowable_contact
         both_ways = self._loaded.both_ways[place]
         share = REVERSED_BENDING_FACTOR if both_ways else 1.0
-        told = {"bent_both_ways": True} if both_ways else {}
+        remarks = {"bent_both_ways": True} if both_ways else {}
         gear = (self._loaded.contact.mesh.pinion, self._loaded.contact.mesh.gear)[place]
         if bent is None and gear.internal and self._loaded.spares_rings:
-            told["bending_judged"] = False
+            remarks["bending_judged"] = False
         return {
             "form": form,
             "size_factor": size,
@@ -399,7 +400,7 @@ class StressCalculator:
             "contact_stress": pressed,
             "bending_safety": share * bending[place] / bent if bending and bent is not None else None,
             "contact_safety": contact[place] / pressed if contact and pressed is not None else None,
-            **told,
+            **remarks,
         }
 
     @cached_property
@@ -479,10 +480,10 @@ def describe_power_rejections(failed: int) -> str:
 def describe_too_weak(required: CarriedPower, failed: int, every: bool, strongest: float) -> str:
     """Describe that no train carries the power; ``strongest`` is the power of the strongest, W, or 0 if unknown."""
     which = f"the {failed} possible trains" if every else f"the best {failed} trains"
-    told = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
+    sentence = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
     if strongest:
-        told += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
-    return told if every else f"{told} Further trains were not checked."
+        sentence += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
+    return sentence if every else f"{sentence} Further trains were not checked."
 
 
 def build_stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:
@@ -504,9 +505,7 @@ def mark_idlers(stage: TrainStage, place: int) -> tuple[bool, bool]:
     return place > 0, place + 2 < len(stage.gears)
 
 
-def describe_strength(
-    loaded: LoadedPair, method: StrengthMethod, face_width: float | None, unit: float
-) -> dict[str, Any]:
+def describe_strength(loaded: LoadedPair, method: StrengthMethod, face_width: float | None, unit: float) -> JsonObject:
     """Describe the strength of a pair by the fields of :class:`PairStrength`; ``unit`` is the length unit in mm."""
     judge = StressCalculator(loaded, method)
     least = judge.find_min_width()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
-from synthesis.model.dynamics.request import DesignDynamics
+from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity
 from synthesis.model.layout import LayoutSpec
 from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import EDGE_TOLERANCE, MovingZone
@@ -27,12 +27,9 @@ from synthesis.model.problem import (
     Statement,
 )
 
-Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
-"""Quantities of a linkage's forces that can be limited (docs/mechanisms/dynamics.md)."""
+FORCE_NAMES: tuple[ForceQuantity, ...] = get_args(ForceQuantity)
 
-FORCE_NAMES: tuple[Force, ...] = get_args(Force)
-
-RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
+RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | ForceQuantity
 """Criteria by which designs of linkages can be ordered (docs/methods/ranking.md)."""
 
 
@@ -140,7 +137,7 @@ class Constraints(Statement):
     )
 
     @property
-    def force_limits(self) -> dict[Force, float]:
+    def force_limits(self) -> dict[ForceQuantity, float]:
         """The given limits on forces."""
         limits = {name: getattr(self, f"max_{name}") for name in FORCE_NAMES}
         return {name: limit for name, limit in limits.items() if limit is not None}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -35,7 +35,7 @@ class TargetSpec(Statement):
 
     @model_validator(mode="before")
     @classmethod
-    def _validate_sort(cls, fields: Any) -> Any:
+    def _validate_sort(cls, fields: object) -> object:
         # Leave wrong types to pydantic's own message.
         if not isinstance(fields, dict):
             return fields

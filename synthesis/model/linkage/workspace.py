@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, Field
 
 from kinematics.arrays import Complex
 from synthesis.model.dimension import LENGTH
+from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.zones import MovingZone, Outline, Zone
 from synthesis.model.problem import Contradiction, NonNegative, Point, Statement
 
@@ -116,7 +117,7 @@ class Space(Statement):
             z = place + turn * (complex(*point) - first)
             return z.real, z.imag
 
-        update: dict[str, Any] = {}
+        update: JsonObject = {}
         if self.body is not None:
             update["body"] = self.body.model_copy(
                 update={"outline": [move_point(corner) for corner in self.body.outline]}

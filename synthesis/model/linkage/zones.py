@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, Self
 
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
@@ -15,6 +15,7 @@ from synthesis.model.triangles import triangulate_polygon
 
 if TYPE_CHECKING:
     from shapely import Polygon
+    from shapely.geometry.base import BaseGeometry
 
 
 MAX_VERTICES = 1000
@@ -65,7 +66,7 @@ class Circle(Statement):
     radius: PositiveLength
 
 
-def _build_geometry(corners: Complex) -> Any:
+def _build_geometry(corners: Complex) -> BaseGeometry:
     """Build the Shapely geometry of a point, a line or a polygon from its corners."""
     from shapely import LineString, Point, Polygon
 

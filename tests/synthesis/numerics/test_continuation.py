@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 from numba import njit
 
-from synthesis.numerics.continuation import END_REACHED, SYSTEM, follow, refine
+from synthesis.numerics.continuation import END_REACHED, SYSTEM, CompiledSystem, ParameterPath, follow, refine
 from synthesis.numerics.double_double import add, compute_reciprocal, multiply
 from synthesis.numerics.elimination import factor, reduce, solve
-
-GROUPS = np.zeros(3, np.int64)
-SCRATCH = 9
 
 
 @njit(SYSTEM, cache=True, nogil=True)
@@ -39,6 +36,9 @@ def three_quadrics(y, low, p, p_low, dp, newton, tangent, work):
     return 1
 
 
+QUADRICS = CompiledSystem(three_quadrics, np.zeros(3, np.int64), 9)
+
+
 def value(y, p):
     i, j = np.triu_indices(3)
     c = p.reshape(3, 10)
@@ -61,7 +61,7 @@ def test_all_solutions_of_three_quadrics_are_reached(spheres, threads):
     start, p = spheres
     for _ in range(20):
         target, bend = rng.normal(size=(2, 30)) + 1j * rng.normal(size=(2, 30))
-        ends = follow(three_quadrics, GROUPS, SCRATCH, start, p, target, bend, threads=threads)
+        ends = follow(QUADRICS, start, ParameterPath(p, target, bend), threads=threads)
         assert (ends.status == END_REACHED).all()
         assert np.abs(value(ends.y, target)).max() < 1e-9 * np.abs(ends.y).max() ** 2
         gaps = np.abs(ends.y[:, None] - ends.y[None]).max(axis=-1) + np.eye(8)
@@ -74,14 +74,14 @@ def test_a_path_to_infinity_is_not_reached(spheres):
     target[2, 5], target[2, 8] = 0.0, 1.0  # the third equation becomes linear: four solutions, four at infinity
     bend = np.random.default_rng(2).normal(size=(30, 2)) @ [0.1, 0.1j]
     bend.reshape(3, 10)[2, :] = 0.0
-    ends = follow(three_quadrics, GROUPS, SCRATCH, start, p, target.ravel(), bend)
+    ends = follow(QUADRICS, start, ParameterPath(p, target.ravel(), bend))
     finite = (ends.status == END_REACHED) & (np.abs(ends.y).max(axis=-1) < 1e6)
     assert finite.sum() == 4
 
 
 def test_refining_from_nearby_gives_the_solution_to_its_last_digit(spheres):
     start, p = spheres
-    y, _, moved = refine(three_quadrics, GROUPS, SCRATCH, start + 1e-3, np.zeros_like(start), p)
+    y, _, moved = refine(QUADRICS, start + 1e-3, np.zeros_like(start), p)
     assert np.abs(y - start).max() < 1e-15
     assert moved.max() < 1e-13
 

@@ -21,16 +21,21 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Mask, Real
 from synthesis.kinds.function.nine_pairs.system import (
+    NINE_PAIR_SYSTEM,
     PARAMETER_COUNT,
-    SCALE_GROUPS,
-    SCRATCH_SIZE,
+    PRECISE_NINE_PAIR_SYSTEM,
     SOLUTION_COUNT,
     UNKNOWN_COUNT,
     is_linkage,
-    nine_pair_system,
-    nine_pair_system_extended,
 )
-from synthesis.numerics.continuation import CONVERGENCE_TOLERANCE, END_REACHED, estimate_progress, follow, refine
+from synthesis.numerics.continuation import (
+    CONVERGENCE_TOLERANCE,
+    END_REACHED,
+    ParameterPath,
+    estimate_progress,
+    follow,
+    refine,
+)
 from synthesis.numerics.point_set import KnownPoints, mark_duplicates
 
 DUPLICATE_TOLERANCE = 1e-10
@@ -104,7 +109,7 @@ def load_nine_pair_start() -> StartSystem:
     with resources.files(__package__).joinpath("nine_pair_start.npz").open("rb") as opened, np.load(opened) as arrays:
         y, p = arrays["y"].astype(np.complex128), arrays["p"]
     # The stored solutions are in single precision; refine them once per process.
-    return StartSystem(refine(nine_pair_system, SCALE_GROUPS, SCRATCH_SIZE, y, np.zeros_like(y), p)[0], p)
+    return StartSystem(refine(NINE_PAIR_SYSTEM, y, np.zeros_like(y), p)[0], p)
 
 
 def find_all_watts(
@@ -190,7 +195,7 @@ class _Solutions:
     def refine_ends(self, y: Complex, low: Complex | None = None) -> tuple[Complex, Mask]:
         """Refine end points with equations in double-double precision; also return the mask of valid solutions."""
         low = np.zeros_like(y) if low is None else low
-        y, _, moved = refine(nine_pair_system_extended, SCALE_GROUPS, SCRATCH_SIZE, y, low, self.turns)
+        y, _, moved = refine(PRECISE_NINE_PAIR_SYSTEM, y, low, self.turns)
         size = np.abs(y)
         inside = (size > MIN_VECTOR).all(axis=-1) & (size < MAX_VECTOR).all(axis=-1)
         return y, np.asarray((moved < CONVERGENCE_TOLERANCE) & inside & is_linkage(y))
@@ -257,13 +262,9 @@ def _follow_paths(
     """Follow some start solutions to the problem; return the keys of their end points, NaN for failed paths."""
     begun = load_nine_pair_start()
     ends = follow(
-        nine_pair_system_extended if again else nine_pair_system,
-        SCALE_GROUPS,
-        SCRATCH_SIZE,
+        PRECISE_NINE_PAIR_SYSTEM if again else NINE_PAIR_SYSTEM,
         begun.y[some],
-        begun.p,
-        solutions.p,
-        bend,
+        ParameterPath(begun.p, solutions.p, bend),
         tolerance=tolerance,
         most_steps=MAX_RETRY_STEPS if again else MAX_STEPS,
         threads=threads,

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
 from kinematics.compiling import njit
-from synthesis.numerics.continuation import SYSTEM
+from synthesis.numerics.continuation import SYSTEM, CompiledSystem
 from synthesis.numerics.double_double import add, compute_reciprocal, multiply
 from synthesis.numerics.elimination import reduce
 
@@ -226,3 +226,9 @@ def compute_residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
     terms = np.abs(t * t_bar) + np.abs(x * t) + np.abs(x * t_bar)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray((np.abs(t * t_bar + x * (t + t_bar)) / terms).max(axis=-1))
+
+
+NINE_PAIR_SYSTEM = CompiledSystem(nine_pair_system, SCALE_GROUPS, SCRATCH_SIZE)
+"""The equations for the tracker, and below in twice the precision."""
+
+PRECISE_NINE_PAIR_SYSTEM = NINE_PAIR_SYSTEM._replace(evaluate=nine_pair_system_extended)

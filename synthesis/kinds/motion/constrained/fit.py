@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
-from synthesis.fit.constrained_fit import fit_constrained
+from synthesis.fit.constrained_fit import RowCounts, Schedule, fit_constrained
 from synthesis.fit.workspace import AIM_SHARE, NO_WORKSPACE, pack_workspace
 from synthesis.fit.workspace_margins import count_margins
 from synthesis.kinds.motion.constrained.clearance_residuals import compute_min_margins
@@ -57,11 +57,9 @@ from synthesis.results.ranking import select_distinct
 HOME_WEIGHT = 0.3
 """Weight of the distance from the start, in task sizes, for a linkage that should stay near it."""
 
-LIMIT_WEIGHT, WORKSPACE_WEIGHT = 10.0, 1e4
-"""Penalty weights of limits in the first descent: in general, and with workspace margins, which have kinks."""
-
-MAX_WORKSPACE_ROUNDS, MAX_WORKSPACE_STEPS = 20, 12
-"""Maximum number of descents in a workspace, and of steps in each."""
+SCHEDULE, WORKSPACE_SCHEDULE = Schedule(10.0, MAX_ROUNDS, MAX_STEPS), Schedule(1e4, 20, 12)
+"""Weight of the limits in the first descent, and maximum number of descents and of steps in each: in general, and with
+workspace margins, which have kinks."""
 
 DUPLICATE_TOLERANCE = 0.02
 """Distance of joints, as a share of the task's size, below which two linkages are duplicates; the better is kept."""
@@ -151,12 +149,9 @@ def solve_constrained(rows: Real, linkages: Sequence[ConstrainedFit]) -> list[Co
         # Only accept fits that satisfy all constraints; the workspace has its own tolerance.
         count = roomy + count_pose_margins(n)
         x, state = linkage.x.copy(), np.zeros(count)
-        status, cost = fit_constrained(
-            evaluate_rows, x, rows, linkage.setting, state,
-            most=len(x) + FIXED_RESIDUAL_COUNT + count, in_workspace=roomy, limits=count, equations=count_equations(n),
-            weight=WORKSPACE_WEIGHT if roomy else LIMIT_WEIGHT,
-            rounds=MAX_WORKSPACE_ROUNDS if roomy else MAX_ROUNDS, steps=MAX_WORKSPACE_STEPS if roomy else MAX_STEPS,
-        )  # fmt: skip
+        counts = RowCounts(len(x) + FIXED_RESIDUAL_COUNT + count, count, count_equations(n), roomy)
+        schedule = WORKSPACE_SCHEDULE if roomy else SCHEDULE
+        status, cost = fit_constrained(evaluate_rows, x, rows, linkage.setting, state, counts, schedule)
         if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(cost):
             return None
         return ConstrainedFit(x, linkage.setting)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
 from kinematics.compiling import njit
-from synthesis.numerics.continuation import SYSTEM
+from synthesis.numerics.continuation import SYSTEM, CompiledSystem
 from synthesis.numerics.elimination import factor, solve
 
 SOLUTION_COUNT = 36
@@ -104,3 +104,7 @@ def compute_conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
     norms = np.abs(jacobian).max(axis=2)
     jacobian /= np.where(norms > 0.0, norms, 1.0)[:, :, None]
     return np.asarray(np.linalg.cond(jacobian))
+
+
+FIVE_POINT_SYSTEM = CompiledSystem(evaluate_five_point_system, SCALE_GROUPS, SCRATCH_SIZE)
+"""The equations for the tracker."""

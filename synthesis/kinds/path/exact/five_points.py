@@ -14,17 +14,15 @@ import numpy as np
 from kinematics.arrays import Complex
 from synthesis.kinds.path.exact.continuation_starts import load_five_point_start
 from synthesis.kinds.path.exact.five_point_system import (
+    FIVE_POINT_SYSTEM,
     PARAMETER_COUNT,
-    SCALE_GROUPS,
-    SCRATCH_SIZE,
     SOLUTION_COUNT,
     UNKNOWN_COUNT,
     compute_conditions,
     compute_residuals,
-    evaluate_five_point_system,
 )
 from synthesis.model.linkage.conversion import FourbarConfiguration
-from synthesis.numerics.continuation import CONVERGENCE_TOLERANCE, END_REACHED, follow, refine
+from synthesis.numerics.continuation import CONVERGENCE_TOLERANCE, END_REACHED, ParameterPath, follow, refine
 
 BEND_SIZE = 2.0
 """Size of the random bend of the parameters' path, in sizes of the problem."""
@@ -90,9 +88,7 @@ def solve_five_points(points: Complex, o2: complex, o4: complex, rng: np.random.
     for way in range(MAX_RUNS):
         bend = BEND_SIZE * (rng.normal(size=(PARAMETER_COUNT, 2)) @ np.array([1.0, 1.0j]))
         tolerance = FIRST_STEP_TOLERANCE if way == 0 else LATER_STEP_TOLERANCE
-        ends = follow(
-            evaluate_five_point_system, SCALE_GROUPS, SCRATCH_SIZE, begun.y, begun.p, p, bend, tolerance=tolerance
-        )
+        ends = follow(FIVE_POINT_SYSTEM, begun.y, ParameterPath(begun.p, p, bend), tolerance=tolerance)
         arrived = ends.y[(ends.status == END_REACHED) & np.isfinite(ends.y).all(axis=1)]
         arrived = arrived[
             compute_residuals(arrived, p) <= MAX_RESIDUAL * np.maximum(1.0, np.abs(arrived[:, :4]).max(axis=1)) ** 2
@@ -134,7 +130,7 @@ def _extract_real(y: Complex, p: Complex) -> list[tuple[complex, complex]]:
     near = y[apart <= REAL_TOLERANCE * np.abs(y).max(axis=1)].copy()
     # Project onto the real solutions, so that Newton's method stays among them if one is near.
     near = 0.5 * (near + _compute_conjugates(near))
-    near, _, moved = refine(evaluate_five_point_system, SCALE_GROUPS, SCRATCH_SIZE, near, np.zeros_like(near), p)
+    near, _, moved = refine(FIVE_POINT_SYSTEM, near, np.zeros_like(near), p)
     near = near[moved < CONVERGENCE_TOLERANCE]
     still = np.abs(near - _compute_conjugates(near)).max(axis=1) <= REAL_TOLERANCE * np.abs(near).max(axis=1)
     return [(complex(solution[0]), complex(solution[2])) for solution in near[still]]

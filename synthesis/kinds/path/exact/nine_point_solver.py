@@ -13,12 +13,10 @@ from kinematics.arrays import Complex
 from synthesis.kinds.path.design import CognateTriples, PathResult
 from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start
 from synthesis.kinds.path.exact.nine_point_system import (
+    NINE_POINT_SYSTEM,
     ORBIT_COUNT,
-    SCALE_GROUPS,
-    SCRATCH_SIZE,
+    PRECISE_NINE_POINT_SYSTEM,
     compute_orbit_keys,
-    evaluate_nine_point_system,
-    evaluate_nine_point_system_extended,
 )
 from synthesis.kinds.path.exact.nine_points import TripleSolutions, compute_triples
 from synthesis.kinds.path.problem import PathProblem
@@ -26,7 +24,7 @@ from synthesis.kinds.path.results import PathCandidateLog
 from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import FourbarConfiguration
-from synthesis.numerics.continuation import follow, refine
+from synthesis.numerics.continuation import ParameterPath, follow, refine
 
 POINT_COUNT = 9
 
@@ -86,14 +84,12 @@ def warm_up() -> None:
     """
     begun = load_nine_point_start()
     y, low, _ = refine(
-        evaluate_nine_point_system_extended,
-        SCALE_GROUPS,
-        SCRATCH_SIZE,
+        PRECISE_NINE_POINT_SYSTEM,
         begun.y[:2],
         np.zeros_like(begun.y[:2]),
         begun.p,
     )
-    follow(evaluate_nine_point_system, SCALE_GROUPS, SCRATCH_SIZE, y, begun.p, begun.p, np.zeros_like(begun.p))
+    follow(NINE_POINT_SYSTEM, y, ParameterPath(begun.p, begun.p, np.zeros_like(begun.p)))
     compute_orbit_keys(y, begun.p, low)
 
 

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.numerics.continuation import SYSTEM
+from synthesis.numerics.continuation import SYSTEM, CompiledSystem
 from synthesis.numerics.double_double import add, compute_reciprocal, multiply
 from synthesis.numerics.elimination import reduce
 
@@ -327,3 +327,9 @@ def construct_cognate(y: Complex, p: Complex) -> Complex:
 def construct_cognates(y: Complex, p: Complex) -> Complex:
     """Return the three members of each orbit that differ by more than the order of their dyads: shape (..., 3, 16)."""
     return np.stack([y, construct_cognate(y, p), construct_cognate(swap_dyads(y), p)], axis=-2)
+
+
+NINE_POINT_SYSTEM = CompiledSystem(evaluate_nine_point_system, SCALE_GROUPS, SCRATCH_SIZE)
+"""The equations for the tracker, and below in twice the precision."""
+
+PRECISE_NINE_POINT_SYSTEM = NINE_POINT_SYSTEM._replace(evaluate=evaluate_nine_point_system_extended)

@@ -18,19 +18,24 @@ import numpy as np
 from kinematics.arrays import Complex, Mask
 from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start
 from synthesis.kinds.path.exact.nine_point_system import (
+    NINE_POINT_SYSTEM,
     ORBIT_COUNT,
     PARAMETER_COUNT,
-    SCALE_GROUPS,
-    SCRATCH_SIZE,
+    PRECISE_NINE_POINT_SYSTEM,
     compute_conditions,
     compute_orbit_keys,
     compute_residuals,
     construct_cognates,
-    evaluate_nine_point_system,
-    evaluate_nine_point_system_extended,
     is_linkage,
 )
-from synthesis.numerics.continuation import CONVERGENCE_TOLERANCE, END_REACHED, estimate_progress, follow, refine
+from synthesis.numerics.continuation import (
+    CONVERGENCE_TOLERANCE,
+    END_REACHED,
+    ParameterPath,
+    estimate_progress,
+    follow,
+    refine,
+)
 from synthesis.numerics.point_set import KnownPoints
 
 MAX_RESIDUAL = 1e-8
@@ -217,9 +222,7 @@ class _OrbitSet:
         if alone.any():
             low = np.concatenate([_swap_conjugates(self.low[alone]), np.zeros((np.count_nonzero(alone), 8))], axis=-1)
             # The conjugate of an inaccurate end need not satisfy the equations to rounding.
-            y, low, moved = refine(
-                evaluate_nine_point_system_extended, SCALE_GROUPS, SCRATCH_SIZE, mirrored[alone], low, self.p
-            )
+            y, low, moved = refine(PRECISE_NINE_POINT_SYSTEM, mirrored[alone], low, self.p)
             kept = (moved < CONVERGENCE_TOLERANCE) & self._check_soundness(y, low)
             self._join(y[kept], low[kept])
 
@@ -256,13 +259,9 @@ def _follow_paths(
     """Follow solutions of the start to the problem, lost ones in twice the precision; return which have a sound end of
     their own."""
     ends = follow(
-        evaluate_nine_point_system_extended if again else evaluate_nine_point_system,
-        SCALE_GROUPS,
-        SCRATCH_SIZE,
+        PRECISE_NINE_POINT_SYSTEM if again else NINE_POINT_SYSTEM,
         y,
-        begun,
-        orbits.p,
-        bend,
+        ParameterPath(begun, orbits.p, bend),
         tolerance=tolerance,
         most_steps=MAX_STEPS,
         threads=threads,
@@ -270,9 +269,7 @@ def _follow_paths(
     )
     sound = np.asarray((ends.status == END_REACHED) & np.isfinite(ends.y).all(axis=-1))
     # Refine, so that the keys of ill-conditioned solutions have enough digits to distinguish them.
-    y, low, _ = refine(
-        evaluate_nine_point_system_extended, SCALE_GROUPS, SCRATCH_SIZE, ends.y[sound], ends.low[sound], orbits.p
-    )
+    y, low, _ = refine(PRECISE_NINE_POINT_SYSTEM, ends.y[sound], ends.low[sound], orbits.p)
     sound[sound] = orbits.add(y, low)
     return sound
 
@@ -287,9 +284,7 @@ def _extract_real_linkages(orbits: _OrbitSet) -> Complex:
     # Project onto conjugate pairs; Newton's method stays among them if a real solution is near.
     near[:, :8:2] = 0.5 * (near[:, :8:2] + near[:, 1:8:2].conj())
     near[:, 1:8:2] = near[:, :8:2].conj()
-    near, low, moved = refine(
-        evaluate_nine_point_system_extended, SCALE_GROUPS, SCRATCH_SIZE, near, np.zeros_like(near), orbits.p
-    )
+    near, low, moved = refine(PRECISE_NINE_POINT_SYSTEM, near, np.zeros_like(near), orbits.p)
     real = (moved < CONVERGENCE_TOLERANCE) & (compute_residuals(near, orbits.p, low) <= MAX_RESIDUAL)
     members = construct_cognates(near[real], orbits.p)
     x_1, r_1, x_2, r_2 = (members[..., k] for k in (0, 2, 4, 6))

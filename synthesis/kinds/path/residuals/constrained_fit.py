@@ -31,10 +31,7 @@ def fit_constrained(x: Real, rows: Real, setting: Real, state: Real) -> tuple[St
         Crank angles first; changed in place.
     """
     limits, roomy = count_setting_margins(setting), int(count_margins(setting[PATH_SETTING_SIZE:]))
+    counts = fit.RowCounts(2 * len(rows) + limits, limits, EQUATION_COUNT, roomy)
     rounds, steps = (MAX_WORKSPACE_ROUNDS, MAX_WORKSPACE_STEPS) if roomy else (MAX_ROUNDS, MAX_STEPS)
-    most = 2 * len(rows) + limits
-    return fit.fit_constrained(
-        compute_path_rows, x, rows, setting, state,
-        most=most, in_workspace=roomy, limits=limits, equations=EQUATION_COUNT, weight=LIMIT_WEIGHT, rounds=rounds,
-        steps=steps,
-    )  # fmt: skip
+    schedule = fit.Schedule(LIMIT_WEIGHT, rounds, steps)
+    return fit.fit_constrained(compute_path_rows, x, rows, setting, state, counts, schedule)

@@ -8,14 +8,15 @@ import pytest
 from synthesis.dispatch import solve
 from synthesis.kinds.function.nine_pairs.continuation import BEND_SIZE, load_nine_pair_start
 from synthesis.kinds.function.nine_pairs.system import (
-    SCALE_GROUPS,
+    NINE_PAIR_SYSTEM,
+    PRECISE_NINE_PAIR_SYSTEM,
     SCRATCH_SIZE,
     SOLUTION_COUNT,
     compute_residuals,
     nine_pair_system,
     nine_pair_system_extended,
 )
-from synthesis.numerics.continuation import END_REACHED, follow, refine
+from synthesis.numerics.continuation import END_REACHED, ParameterPath, follow, refine
 from synthesis.numerics.point_set import KnownPoints
 from synthesis.registry import parse_problem
 from tests.support.sixbars.nine_pairs import planted
@@ -64,7 +65,7 @@ def test_a_change_of_the_turns_below_rounding_moves_the_precise_solution():
     y, p = nine_pair_problem(rng)
     dp = rng.normal(size=16) + 1j * rng.normal(size=16)
     zero, work = np.zeros(8, complex), np.empty(SCRATCH_SIZE, complex)
-    refined, low, _ = refine(nine_pair_system_extended, SCALE_GROUPS, SCRATCH_SIZE, y[None], zero[None], p)
+    refined, low, _ = refine(PRECISE_NINE_PAIR_SYSTEM, y[None], zero[None], p)
     newton, tangent = np.empty((2, 8), np.complex128)
     assert nine_pair_system_extended(refined[0], low[0], p, 1e-22 * dp, dp, newton, tangent, work) == 1
     assert np.abs(newton - 1e-22 * tangent).max() < 1e-3 * np.abs(1e-22 * tangent).max()
@@ -79,13 +80,12 @@ def test_a_nearly_singular_end_is_reached_along_a_precise_way_alone():
     rng = np.random.default_rng(0)
     bend = [BEND_SIZE * (rng.normal(size=(16, 2)) @ np.array([1.0, 1.0j])) for _ in range(2)][1]
     begun, one = load_nine_pair_start(), [1458]
-    way = begun.y[one], begun.p, p, bend
+    path = ParameterPath(begun.p, p, bend)
     rough, fine = (
         follow(
-            nine_pair_system_extended,
-            SCALE_GROUPS,
-            SCRATCH_SIZE,
-            *way,
+            PRECISE_NINE_PAIR_SYSTEM,
+            begun.y[one],
+            path,
             tolerance=1e-4,
             most_steps=20_000,
             precise=precise,
@@ -108,9 +108,7 @@ def test_the_start_has_all_solutions_each_once():
 def test_some_paths_lead_to_solutions_of_another_problem():
     begun, some = load_nine_pair_start(), slice(0, SOLUTION_COUNT, 700)
     _, p = nine_pair_problem(np.random.default_rng(8))
-    ends = follow(
-        nine_pair_system, SCALE_GROUPS, SCRATCH_SIZE, begun.y[some], begun.p, p, np.zeros(16, complex), tolerance=1e-3
-    )
+    ends = follow(NINE_PAIR_SYSTEM, begun.y[some], ParameterPath(begun.p, p, np.zeros(16, complex)), tolerance=1e-3)
     reached = ends.y[ends.status == END_REACHED]
     assert len(reached) > 30
     assert KnownPoints(8, 1e-6).add(reached).all()
