@@ -1,8 +1,9 @@
-"""What is measured on which design beyond its motion: forces, planes and yield, too expensive for every candidate.
+"""Measurement of forces, planes and yield, which are too expensive to measure on every candidate.
 
-A candidate is measured during the search only for what the problem limits, and only after it passed everything else. A
-design of the answer is measured for every block of the problem, whether it passed or not; before that, the designs of a
-search that is ordered by one of these quantities are measured for this one. No design is measured twice.
+During the search, only the quantities that the problem limits are measured, and only on candidates that passed all
+other checks. If the designs are ordered by one of these quantities, it is then measured on all designs that were found.
+Finally the designs of the answer are measured for every block of the problem, whether they passed or not. No design is
+measured twice.
 """
 
 from __future__ import annotations
@@ -28,20 +29,20 @@ class _Measurement(NamedTuple):
     Attributes
     ----------
     orders : collection of str
-        Values of ``rank_by`` that need it.
+        Values of ``rank_by`` that need the measurement.
     is_requested, is_limited : callable
-        Whether the problem has the block for it, and whether it has a limit that designs must satisfy.
+        Whether the problem contains the block that requests it, and whether the problem limits its result.
     add : callable
-        Returns the design of an answer with the result, unchanged if it has it already.
-    check : callable
-        Returns a candidate with the result and its check.
+        Returns a design of an answer with the result; unchanged if the design already has it.
+    judge : callable
+        Returns a candidate with the result and with the check of its limit.
     """
 
     orders: Collection[str]
     is_requested: Callable[[LinkageProblem], bool]
     is_limited: Callable[[LinkageProblem], bool]
     add: Callable[[LinkageProblem, DrivenDesign], DrivenDesign]
-    check: Callable[[LinkageProblem, DrivenDesign], DrivenDesign]
+    judge: Callable[[LinkageProblem, DrivenDesign], DrivenDesign]
 
 
 def _are_forces_limited(problem: LinkageProblem) -> bool:
@@ -69,9 +70,9 @@ _MEASUREMENTS = (
 
 
 def check_shared_constraints(problem: ProblemBase, design: Design) -> Design | None:
-    """Return a verified design with the checks of its workspace, forces, planes and yield, as far as limited.
+    """Return a verified design with the checks of its workspace, and of its forces, planes and yield if limited.
 
-    The first failed check ends the verification. None if no mechanism can be built from the dimensions of the design.
+    A failed check ends the verification. Return None if no mechanism can be built from the dimensions of the design.
     """
     judged = check_workspace_of_design(problem, design)
     if judged is None or not isinstance(problem, LinkageProblem):
@@ -80,14 +81,14 @@ def check_shared_constraints(problem: ProblemBase, design: Design) -> Design | N
     driven = cast(DrivenDesign, judged)
     for measurement in _MEASUREMENTS:
         if driven.verification.passed and measurement.is_limited(problem):
-            driven = measurement.check(problem, driven)
+            driven = measurement.judge(problem, driven)
     return cast(Design, driven)
 
 
 def measure_designs(problem: LinkageProblem, result: AnyResult, order: str | None = None) -> AnyResult:
-    """Return an answer with the results that its blocks request, or that ``order`` needs, on all designs.
+    """Measure all designs of an answer and its nearest miss for every block of the problem.
 
-    The nearest miss is measured, too.
+    With ``order``, a value of ``rank_by``, only the quantity that this order needs is measured.
     """
     wanted = [
         measurement

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from synthesis import parse_problem, solve
+from synthesis.kinds.straight_line.design import StraightLineMetrics
 from synthesis.results.pareto import measure_error
 from synthesis.results.practicality import ERROR_BAND, is_usable, sort_usable_first
 from tests.campaign import sampled
@@ -54,7 +55,7 @@ def made(transmission: float, ratio: float, reach: float | None, error: float = 
     """A design that passed, by its measures alone."""
     return SimpleNamespace(
         verification=SimpleNamespace(passed=True),
-        metrics=SimpleNamespace(
+        metrics=StraightLineMetrics.model_construct(
             min_transmission_angle=transmission, link_ratio=ratio, reach=reach, straightness_error=error
         ),
     )

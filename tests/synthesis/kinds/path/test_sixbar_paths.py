@@ -43,7 +43,7 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
     room = {"box": [[-120.0, -110.0], [140.0, 150.0]], "link_width": 4.0, "obstacles": [FAR_AWAY]}
     problem = parse_problem(TASK | {"space": room | {"clearance": clearance}})
     centre, size = 10.0 + 5.0j, 80.0
-    held = pack_sixbar_setting(problem, centre, size, 20.0, 10.0)[ROOM : ROOM + 4] * size
+    held = pack_sixbar_setting(problem, centre, size, 20.0, 10.0)[ROOM] * size
     sides = held + np.array([10.0, 10.0, 5.0, 5.0]) - WORKSPACE_MARGIN * size * np.array([1.0, -1.0, 1.0, -1.0])
     assert sides == pytest.approx([-118.0, 138.0, -108.0, 148.0])
     assert problem.space.shrink_box_for_joints() == (-118.0, 138.0, -108.0, 148.0)
