@@ -100,7 +100,7 @@ def test_a_step_file_has_all_parts_by_name_and_its_shafts_on_their_axes(name: st
     assert found.keys() == {part.name for part in whole.parts}
     base = next(part for part in whole.parts if part.name == "base")
     stated = [hole.centre for hole in base.region.holes if isinstance(hole, Disc)]
-    bores = [face for face in found["base"].list_faces() if face.geom_type == GeomType.CYLINDER]
+    bores = [face for face in found["base"].faces() if face.geom_type == GeomType.CYLINDER]
     axes = [complex(face.axis_of_rotation.position.X, face.axis_of_rotation.position.Y) for face in bores]
     assert stated
     for place in stated:

@@ -197,7 +197,7 @@ def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) 
     for part in whole.parts:
         if part.sort not in ("link", "base"):
             continue
-        bores = [face for face in read[part.name].list_faces() if face.geom_type == GeomType.CYLINDER]
+        bores = [face for face in read[part.name].faces() if face.geom_type == GeomType.CYLINDER]
         axes = [complex(at.X, at.Y) for at in (face.axis_of_rotation.position for face in bores)]
         held = [hole.centre for hole in part.region.holes if isinstance(hole, Disc)]
         joints = [complex(mechanism.joints[name]) for name in mechanism.links.get(part.carrier.link, ())]

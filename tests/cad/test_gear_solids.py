@@ -95,7 +95,7 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
             one = found[webbed if webbed in found else f"gear_{number}_{role}"]
             bores = [
                 face
-                for face in one.list_faces()
+                for face in one.faces()
                 if face.geom_type == GeomType.CYLINDER and shaft < face.radius < 1.1 * shaft
             ]
             bore = max(bores, key=lambda face: face.area)

@@ -106,7 +106,7 @@ def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -
         assert tuple(one.color)[:3] == pytest.approx(colour, abs=0.01)
         if part.sort != "link":
             continue
-        bores = [face for face in one.list_faces() if face.geom_type == GeomType.CYLINDER]
+        bores = [face for face in one.faces() if face.geom_type == GeomType.CYLINDER]
         axes = {complex(round(a.X, 7), round(a.Y, 7)) for a in (face.axis_of_rotation.position for face in bores)}
         joints = [complex(mechanism.joints[joint]) for joint in mechanism.links[part.carrier.link]]
         held = {hole.centre for hole in part.region.holes if isinstance(hole, Disc)}

@@ -124,7 +124,7 @@ def triangulate(shape: Solid) -> Surface:
     BRepMesh_IncrementalMesh(shape.wrapped, DEFLECTION, False, MAX_FACET_ANGLE, False)
     corners: list[tuple[float, float, float]] = []
     triangles: list[tuple[int, int, int]] = []
-    for face in shape.list_faces():
+    for face in shape.faces():
         place = TopLoc_Location()
         facets = BRep_Tool.Triangulation_s(face.wrapped, place)
         if facets is None:  # a sliver thinner than the deflection
@@ -259,10 +259,10 @@ def _make_body(body: Body) -> Shape:
 
 
 def _make_tapered(body: TaperedBody) -> Solid:
-    """Build one pitch of the teeth, copy its faces around the axis, and close the ends with discs and a tube at the
-    bore.
+    """Make a tapered body, such as a bevel gear.
 
-    The shell is sewn of these and simplified to as few faces as possible.
+    The faces of one pitch of the teeth are built and copied around the axis. Discs close the ends, and a tube closes
+    the bore. The shell is sewn from these faces and simplified to as few faces as possible.
     """
     import build123d as b3d
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
@@ -288,7 +288,7 @@ def _make_tapered(body: TaperedBody) -> Solid:
     plug = b3d.extrude(_make_face(Region(bore)), amount=upper.imag - inner.imag, dir=(0, 0, 1)).moved(
         _shift_up(inner.imag)
     )
-    for side in plug.list_faces().sort_by(b3d.Axis.Z)[1:-1]:
+    for side in plug.faces().sort_by(b3d.Axis.Z)[1:-1]:
         sewing.Add(side.wrapped)
     sewing.Perform()
     closed = BRepBuilderAPI_MakeSolid(TopoDS.Shell(sewing.SewedShape())).Solid()
@@ -297,8 +297,10 @@ def _make_tapered(body: TaperedBody) -> Solid:
 
 
 def _make_pitch_faces(body: TaperedBody) -> list[Face]:
-    """Return the faces of one pitch about the origin, without those of its ends: a sector of the body of revolution
-    intersected with a sector of the cone to the apex."""
+    """Return the faces of one pitch of the teeth about the origin, without those of its ends.
+
+    The pitch is a sector of the body of revolution, intersected with a sector of the cone to the apex.
+    """
     import build123d as b3d
 
     outline = body.section.outer
@@ -332,7 +334,7 @@ def _make_pitch_faces(body: TaperedBody) -> list[Face]:
             and any(abs((end.conjugate() * level).real) < PERPENDICULAR_TOLERANCE for end in ends)
         )
 
-    return [face for face in whole.list_faces() if not cut(face)]
+    return [face for face in whole.faces() if not cut(face)]
 
 
 def _find_pitch_start(body: TaperedBody) -> float:
