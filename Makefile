@@ -1,25 +1,25 @@
-# make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it); with
-#              MECHSYNTH_CAD=1 also the libraries that make solids of parts
-# make quick   the tests that take less than a second of CPU each, of all or of TESTS=...
-# make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
-# make test-faults  what becomes of jobs when processes are killed, with figures
-# make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
+# make serve   start the service on http://127.0.0.1:8000 (change this with MECHSYNTH_HOST, MECHSYNTH_PORT, ...); with
+#              MECHSYNTH_CAD=1 also install the libraries that make solids of parts
+# make quick   run the tests that take less than a second of CPU time each: all of them, or those in TESTS=...
+# make test    run ruff, mypy, import-linter and the whole pytest suite except the tests that have a target of their own
+# make test-faults  kill processes and report the outcome of their jobs, with figures
+# make test-cluster  test the service on PostgreSQL, RabbitMQ and Redis (installed if missing, when run as root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
-#              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
-# make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
-# make campaign  checks with thousands of random problems, as many as fit into MINUTES, or all with MINUTES=inf (independent
-#              multibody programs are installed for them), and the studio's kinds on a phone
-# make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour. FUZZED=100000
-#              posts so many spoilt analyses, and a twentieth as many jobs
-# make format  format the sources as make check and make test-browser want them
-# make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
-# make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
-# make test-docs  make the site, and see that every link holds and that what it shows has run
-# make package  a wheel, in dist/
-# make vendor  fetch three.js, which the studio shows assemblies with, as it is published
-# make openapi  write the OpenAPI document to var/openapi.json, and the contract that a test holds the API to
-# make types   make the studio's types of the API, service/studio/types/api.d.ts, for an editor
-# make lock    resolve the dependencies of pyproject.toml anew
+#              generated TypeScript client in node (Chromium and node are installed if missing, when run as root)
+# make test-cad  run the tests of solids, in a separate environment with the extra cad (.venv-cad, a gigabyte)
+# make campaign  check thousands of random problems, as many as fit into MINUTES, or all with MINUTES=inf (independent
+#              multibody programs are installed for comparison), and all kinds in the studio on a phone
+# make fuzz    send hundreds of requests to each operation, and absurd problems of each kind; takes half an hour.
+#              FUZZED=100000 posts that number of corrupted analyses, and a twentieth of it as jobs
+# make format  format the sources as required by make check and make test-browser
+# make demo    solve one real problem over HTTP, print the answer, and draw it to var/demo.svg
+# make docs    build the site in var/site: all pages, the references, and a gallery of machines that the build solves
+# make test-docs  build the site, and check that every link works and that all code shown has been run
+# make package  build a wheel in dist/
+# make vendor  fetch the published files of three.js, with which the studio shows assemblies
+# make openapi  write the OpenAPI document to var/openapi.json, and the contract with which a test compares the API
+# make types   generate the studio's TypeScript types of the API, service/studio/types/api.d.ts, for an editor
+# make lock    resolve the dependencies in pyproject.toml again
 
 PYTHON ?= python3
 VENV   := .venv
@@ -34,9 +34,9 @@ MULTIBODY := $(VENV)/.multibody
 SITE   := $(VENV)/.site
 CAD    := $(VENV)/.cad
 
-# Files of tests are dealt out to two processes.
+# Test files are distributed over two processes.
 SPREAD := -n 2 --dist loadfile
-# What has a target of its own is not even imported.
+# Tests that have a target of their own are deselected; those in the ignored folders are not even imported.
 APART := not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad
 BESIDES := --ignore tests/browser --ignore tests/cad
 
@@ -57,12 +57,12 @@ test: $(STAMP)
 suite: $(STAMP)
 	$(BIN)/pytest -m "$(APART)" $(SPREAD) $(BESIDES)
 
-# Holds the mark `slow` against the CPU time of every case; on a quiet machine.
+# Checks the mark `slow` against the CPU time of every test. Needs a machine without other load.
 marks: $(STAMP)
 	$(BIN)/pytest -m "$(APART)" --check-marks $(SPREAD) $(BESIDES)
 
-# The tests of the service on PostgreSQL and Celery: the real servers, on free ports. Each file runs beside one of the
-# two brokers; what the broker decides (deployments, restarts, faults) runs beside both.
+# Tests of the service on PostgreSQL and Celery, with real servers on free ports. Each file runs with one of the two
+# brokers; tests of behaviour that depends on the broker (deployments, restarts, faults) run with both.
 BY_BROKER := tests/cluster/test_deployment.py tests/cluster/test_restarts.py tests/service/jobs/test_faults.py
 ON_RABBITMQ := $(addprefix tests/service/jobs/test_,jobs_api.py turns.py store.py upgrade.py) \
     tests/service/api/test_idempotency.py tests/cluster/test_schema.py
@@ -83,7 +83,7 @@ engines:
 	    && apt-get install -qy --no-install-recommends postgresql rabbitmq-server redis-server; } \
 	    || { echo "the cluster tests need Debian's postgresql, rabbitmq-server and redis-server"; exit 1; }
 
-# What is measured by the clock has the machine to itself.
+# Tests that measure wall-clock time run alone, after all others.
 TIMED := tests/browser/test_smoothness.py
 
 test-browser: $(STAMP) $(NODE) chromium
@@ -95,11 +95,11 @@ chromium:
 	    && apt-get update -q && apt-get install -qy --no-install-recommends chromium; } \
 	    || { echo "the browser tests need Debian's chromium: apt-get install chromium"; exit 1; }
 
-# The tests of the service say what it does without the extra, so that it is installed beside.
+# Other tests check the service without the extra cad, so the extra is installed in a separate environment.
 test-cad:
 	@$(MAKE) --no-print-directory VENV=.venv-cad cad-suite
 
-# Tests of one design, and of one file where it says nothing of designs, go to one process: solids are made once.
+# All tests of a design run in one process, so that its solids are made once; other tests are grouped by file.
 cad-suite: $(VENV)/.cad-tests $(NODE)
 	$(BIN)/pytest -m "cad or not slow" -q -n 2 --dist loadgroup tests/cad tests/service/parts/test_parts.py
 
@@ -109,7 +109,7 @@ $(VENV)/.cad-tests: requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@$(EDITABLE)
 	@touch $@
 
-# How long the random cases may take, in minutes; a quarter of it is the browser's.
+# Time limit for the random cases, minutes. The cases in the browser get about a quarter of it in addition.
 MINUTES := 6
 BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr $(MINUTES) / 4 + 1))
 
@@ -117,15 +117,16 @@ campaign: $(STAMP) $(MULTIBODY) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(BESIDES)
 	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) tests/browser
 
-# Spoilt analyses, and a twentieth as many jobs, that are posted to a server under a limit of memory.
+# Number of corrupted analyses that are posted to a server with a memory limit. A twentieth as many jobs are posted, too.
+# The server must survive all of them.
 FUZZED := 5000
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s
 	$(BIN)/python -m benchmarks.request_fuzz --analyses $(FUZZED) --jobs $$(( $(FUZZED) / 20 ))
 
-# Processes are killed at random and at every write, and what became of the jobs is printed. A quarter of an hour on one
-# machine, and as long on many.
+# Processes are killed at random and at every write, and the outcome of their jobs is printed. It takes a quarter of an
+# hour with a single server, and as long again with a cluster.
 test-faults: $(STAMP) engines
 	$(BIN)/pytest -m "faults and not cluster" -n 2 -rP -q tests/faults
 	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgres+rabbitmq tests/faults
@@ -141,7 +142,7 @@ format: $(STAMP) $(NODE)
 	$(BIN)/ruff format .
 	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '**/*.js' '!vendor/**'
 
-# The inner loop: everything but the tests marked slow, or the TESTS that are named: make quick TESTS=tests/synthesis
+# For the edit-test loop: all tests except those marked slow, or the given TESTS: make quick TESTS=tests/synthesis
 quick: $(STAMP)
 	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES) $(TESTS)
 
@@ -168,26 +169,26 @@ bench: $(STAMP)
 docs: $(SITE)
 	$(BIN)/python -m tools.site
 
-# The tests make the site themselves.
+# The tests build the site themselves.
 test-docs: $(SITE)
 	$(BIN)/pytest -m site tests/tools/test_site.py
 
-# Rewrites tests/service/api/contract.txt; review the difference before you commit it.
+# This rewrites tests/service/api/contract.txt. Review the difference before you commit it.
 openapi: $(STAMP)
 	$(BIN)/python -m tools.contract
 
 types: $(STAMP) $(NODE)
 	$(BIN)/python -m tools.studio.types
 
-# All that runs outside of a checkout: pip install dist/*.whl && mechsynth serve
+# The wheel has everything needed outside a checkout: pip install dist/*.whl && mechsynth serve
 package: $(INSTALLER)/uv.toml
 	@rm -rf build dist
 	@$(UV) build --wheel --python $(PYTHON) --require-hashes --build-constraints requirements.lock --out-dir dist
 	@rm -rf build
 	@ls dist/*.whl
 
-# As it is published, but for the name by which its controls find it: a page whose policy allows no inline script has no
-# import map. This is the last release with files made small for browsers.
+# The files are unchanged except for one import: OrbitControls.js imports 'three', which needs an import map, and a page
+# whose policy forbids inline scripts cannot have one. This is the last release that has minified files for browsers.
 THREE := 0.185.1
 THREE_SUM := a2143f5bf978bd3470a51024b2b6bdd581913ba8f36ff1538d433f3a95adf2df
 FOR_STUDIO := service/studio/vendor
@@ -201,8 +202,9 @@ vendor:
 	@sed "s#} from 'three';#} from './three.module.min.js';#" var/vendor/package/examples/jsm/controls/OrbitControls.js \
 	    > $(FOR_STUDIO)/OrbitControls.js
 
-# The virtual environment is made without ensurepip, which some systems leave out. The system's pip installs uv beside it,
-# and uv everything else in a tenth of pip's time. uv reads no settings of pip: an index that they name is passed on.
+# The virtual environment is created without ensurepip, which some systems do not have. The system's pip installs uv in
+# a folder of its own, and uv installs everything else in a tenth of pip's time. uv does not read pip's settings, so an
+# index URL in them is passed on.
 $(INSTALLER)/uv.toml: requirements.lock
 	@test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
 	@sed -n "/^uv==/,/# via/p" requirements.lock > $(VENV)/uv.lock
@@ -211,28 +213,29 @@ $(INSTALLER)/uv.toml: requirements.lock
 	@{ $(PIP) config get :env:.index-url || $(PIP) config get global.index-url; } 2> /dev/null \
 	    | sed 's/.*/index-url = "&"/' > $@
 
-# One lock has the packages of all extras and groups of pyproject.toml: users get the versions that developers have tried.
-# A package that is not in it, or has another hash, is refused.
+# One lock file has the packages of all extras and groups in pyproject.toml, so users get the versions that developers
+# have tested. A package that is not in it, or has another hash, is refused.
 INSTALL = $(UV) pip install --python $(BIN)/python --require-hashes --constraints requirements.lock -r pyproject.toml
 
-# The project itself, and bytecode of everything, on all processors.
+# Installs the project itself, and compiles all packages to bytecode on all processors.
 EDITABLE = $(UV) pip install --python $(BIN)/python --no-deps --build-constraints requirements.lock -e . \
     && $(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib
 
-# What serving needs. The kernels of the most usual problems are compiled at the first start, the rest beside it.
+# Packages for serving. The kernels of the most common problems are compiled at the first start, and the others while
+# the service is running.
 $(SERVING): requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@echo "installing the locked packages (once; half a minute)"
 	@$(INSTALL)
 	@$(EDITABLE)
 	@touch $@
 
-# What solids need besides: Open CASCADE, and what it brings.
+# Additional packages for solids: Open CASCADE and its dependencies.
 $(CAD): requirements.lock pyproject.toml | $(SERVING)
 	@echo "installing the extra cad (once; a gigabyte)"
 	@$(INSTALL) --extra cad
 	@touch $@
 
-# What developing needs, and all kernels compiled.
+# Packages for development, with all kernels compiled.
 $(STAMP): requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@echo "installing the locked packages for development and compiling all kernels (once; minutes)"
 	@$(INSTALL) --extra cluster --extra telemetry --group dev
@@ -244,7 +247,7 @@ lock: $(INSTALLER)/uv.toml
 	@$(UV) pip compile pyproject.toml --python-version 3.11 --universal --generate-hashes --no-emit-index-url --no-header \
 	    --all-extras --group dev --group docs --group mesh --group multibody -o requirements.lock
 
-# What the tests need of node, from the lock beside it.
+# The node packages that the tests need, at the versions in package-lock.json.
 $(NODE): tests/node/package.json tests/node/package-lock.json
 	@command -v npm > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null \
 	    && apt-get update -q && apt-get install -qy --no-install-recommends nodejs npm; } \
@@ -252,12 +255,12 @@ $(NODE): tests/node/package.json tests/node/package-lock.json
 	@cd tests/node && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 	@touch $@
 
-# Independent multibody programs and a parser of Modelica, which the campaign alone asks.
+# Independent multibody programs and a parser for Modelica, which only the campaign uses.
 $(MULTIBODY): requirements.lock | $(STAMP)
 	@$(INSTALL) --group multibody
 	@touch $@
 
-# What makes the site, and runs the notebooks in it.
+# Packages that build the site and execute its notebooks.
 $(SITE): requirements.lock | $(STAMP)
 	@$(INSTALL) --group docs
 	@touch $@

@@ -1,1 +1,1 @@
-"""What a given mechanism does: pure numerics on arrays, without optimizers, files, clocks or HTTP."""
+"""Analysis of given mechanisms: pure numerics on arrays, without optimizers, files, clocks or HTTP."""

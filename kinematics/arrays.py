@@ -1,4 +1,4 @@
-"""Names of array types, shared by all packages: one word for one kind of number."""
+"""Names of array types, shared by all packages: one name for each kind of number."""
 
 from typing import TypeVar
 

@@ -78,7 +78,7 @@ def find_sources(root: Path, source: Path) -> tuple[Path, ...]:
 
 @cache
 def compute_digest(root: Path, source: Path) -> str:
-    """Return a digest of the text of `sources`; it changes whenever a kernel has to be compiled again."""
+    """Return a digest of all sources of `source`; it changes whenever a kernel has to be compiled again."""
     return sha256(b"".join(sha256(_read_source(file)).digest() for file in find_sources(root, source))).hexdigest()
 
 
@@ -112,7 +112,7 @@ class CheckoutLocator(SourceFolderLocator):
     def from_function(cls, py_func: Callable[..., object], py_file: str) -> object:
         """Return the locator for a kernel (the hook that numba calls), or None outside a checkout."""
         in_checkout = (_find_root(Path(py_file).resolve()) / "pyproject.toml").exists()
-        locator: Any = super()  # numba annotates nothing
+        locator: Any = super()  # numba has no annotations
         return locator.from_function(py_func, py_file) if in_checkout else None
 
 
@@ -141,7 +141,7 @@ class _UpgradableCacheFile(_CacheFile):
             return {}
 
 
-_Dispatcher: Any = CPUDispatcher  # the stubs of numba omit what is overridden here
+_Dispatcher: Any = CPUDispatcher  # the stubs of numba omit the methods that are overridden here
 
 
 class _LazyKernel(_Dispatcher):
@@ -187,10 +187,10 @@ class _LazyKernel(_Dispatcher):
 def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., object]], object]:
     """Wrap `numba.njit`: check its cache against all sources of the kernel and set every option explicitly.
 
-    An option that a callee leaves open is inherited from the kernel it is first compiled for, so results would differ
-    in the last digits with the order of compilation. Fused multiply-add is not available as an option at all: even
-    the compiler's own functions, such as complex division, are compiled once per process, with the options of the
-    first kernel that needs them.
+    An option that a callee leaves open is inherited from the kernel for which it is first compiled, so results would
+    differ in the last digits with the order of compilation. Fused multiply-add is not available as an option at all:
+    even the compiler's own functions, such as complex division, are compiled once per process, with the options of
+    the first kernel that needs them.
     """
     if options.get("fastmath"):
         raise ValueError("a kernel is compiled by the rules of IEEE 754, as all others are")

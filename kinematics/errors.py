@@ -1,4 +1,6 @@
-"""Errors for wrong calls. Mathematics does not raise: a mechanism that cannot be assembled has ``valid`` False.
+"""Errors for invalid calls.
+
+A result that does not exist is no error: a mechanism that cannot be assembled has ``valid`` False.
 
 ::
 

@@ -77,7 +77,7 @@ def _find_cache_folder() -> Path:
 def _compute_state_digest() -> str:
     """Return a digest of everything that compiled kernels depend on."""
     files = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
-    target = cpu_target.target_context.codegen().magic_tuple()  # the system, the processor and what it can do
+    target = cpu_target.target_context.codegen().magic_tuple()  # the system, the processor and its features
     parts = [sys.version, version("numba"), version("llvmlite"), *target]
     # Any changed source invalidates all marks: inlined callees and constants come from other files.
     parts += [sha256(path.read_bytes()).hexdigest() for path in files]

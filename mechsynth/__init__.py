@@ -1,6 +1,6 @@
 """Mechanisms designed from Python: ``from mechsynth import solve, Motion, Position``.
 
-This package has only names and the few objects needed at a Python prompt. The work is done by :mod:`synthesis`,
+This package contains only names and the few classes needed at a Python prompt. The work is done by :mod:`synthesis`,
 :mod:`kinematics` and the parts of :mod:`service` that need no server. See docs/start/library.md for examples.
 """
 

@@ -1,4 +1,4 @@
-"""Answers and their designs for interactive use: drawing, motion, files."""
+"""Answers and their designs for interactive use, with drawings, motion and files."""
 
 from __future__ import annotations
 
@@ -86,19 +86,27 @@ class Design:
         return export_design(self.model, self.problem, self.title, form)
 
     def to_svg(self, path: Place) -> Path:
-        """Write the drawing and return its path. Raises as :meth:`file`, and OSError."""
+        """Write the drawing as SVG and return its path.
+
+        Raises
+        ------
+        NoSuchExport, NotBuilt
+            As :meth:`file`.
+        OSError
+            If the file cannot be written.
+        """
         return self._write_file("svg", path)
 
     def to_dxf(self, path: Place) -> Path:
-        """Write the CAD file in true dimensions; see :meth:`to_svg`."""
+        """Write a DXF file in true dimensions and return its path; raises as :meth:`to_svg`."""
         return self._write_file("dxf", path)
 
     def to_csv(self, path: Place) -> Path:
-        """Write the table; see :meth:`to_svg`."""
+        """Write the table of the motion as CSV and return its path; raises as :meth:`to_svg`."""
         return self._write_file("csv", path)
 
     def to_gif(self, path: Place) -> Path:
-        """Write the animation; see :meth:`to_svg`."""
+        """Write the animation as GIF and return its path; raises as :meth:`to_svg`."""
         return self._write_file("gif", path)
 
     def _write_file(self, form: Form, path: Place) -> Path:
@@ -109,14 +117,14 @@ class Design:
     def motion(self, steps: int = 360) -> Cycle:
         """Analyse the design over its cycle, in ``steps`` equal steps of its input with both ends included.
 
-        A crank turns from the input angle of the first target through a full turn, or as many turns as its gears need
-        to return; any other input moves from toggle to toggle of the branch that contains the targets. The input moves
-        at 1 rad/s, or 1 length unit/s.
+        A crank turns from the input angle of the first target through a full turn, or through as many turns as its
+        gears need to return. Any other input moves from toggle to toggle of the branch that contains the targets. The
+        input moves at 1 rad/s, or at 1 length unit/s.
 
         Raises
         ------
         ValueError
-            If ``steps`` is below 1, or the size of the mechanism is beyond the range for analyses.
+            If ``steps`` is below 1, or if the size of the mechanism exceeds the range of the analyses.
         """
         if steps < 1:
             raise ValueError(f"steps must be at least 1, got {steps}")
@@ -157,12 +165,12 @@ class Result:
 
     @classmethod
     def from_json(cls, problem: Mapping[str, object], result: Mapping[str, object], label: str | None = None) -> Result:
-        """Build the result from the problem and result of a job in JSON.
+        """Build the result from the problem and the result of a job, both in JSON form.
 
         Raises
         ------
         pydantic.ValidationError
-            If the service has another version with other fields.
+            If the service has another version, whose fields differ.
         """
         kind = KINDS[str(problem["kind"])]
         model = kind.result.model_validate_json(json.dumps(result))
@@ -211,7 +219,7 @@ class Result:
 
 
 def _iterate_metrics(designs: Sequence[Design]) -> Iterator[tuple[str, object]]:
-    """Yield the metrics of the best design."""
+    """Yield names and values of the metrics of the best design."""
     for design in designs[:1]:
         yield from ((name, getattr(design.metrics, name)) for name in type(design.metrics).model_fields)
 

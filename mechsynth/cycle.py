@@ -1,4 +1,4 @@
-"""A design over its cycle, as arrays."""
+"""Motion of a design over its cycle, as NumPy arrays."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from kinematics.arrays import Real
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A design over its cycle: n = steps + 1 positions of its input.
+    """Motion of a design over its cycle, at n = steps + 1 positions of its input.
 
     Attributes
     ----------
     input_angle : (n,) array
-        Input angle in degrees; for a driving slider its position along its line, in length units.
+        Input angle in degrees; for a driving slider, its position along its line in length units.
     valid : (n,) array of bool
         Whether the mechanism can be assembled at this position; if not, all other values are NaN.
     joints : mapping of (n, 2) arrays
@@ -31,8 +31,8 @@ class Cycle:
     slides : mapping of (n,) arrays
         Position of each slide along its line, in length units.
     answer : mapping
-        The complete answer of ``GET /v1/jobs/{id}/designs/{n}/motion`` with its names; lists of numbers are arrays in
-        which null is NaN.
+        The complete answer of ``GET /v1/jobs/{id}/designs/{n}/motion``, under the names of the API. Lists of numbers
+        are arrays; null is NaN.
     """
 
     input_angle: Real

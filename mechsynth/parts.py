@@ -1,7 +1,7 @@
 """Components of problems: positions, points, limits, masses, loads, with the names of the API's schemas.
 
-Only the stock of a rotor has another name here, ``RotorStock``, because ``Stock`` is the bar stock of linkages. The
-units of a train series are mappings.
+There is one exception: the stock of a rotor is named ``RotorStock``, because ``Stock`` is the stock of links. The units
+of a train series have no class here; they are given as mappings.
 """
 
 from synthesis.kinds.balancing.statement.counterweights import (

@@ -12,7 +12,10 @@ ProgressCallback = Callable[[float, str], None]
 """Callback with the completed share, from 0 to 1, and the present step."""
 
 Progress = bool | ProgressCallback
-"""True shows a bar if tqdm is installed (``tqdm.auto``), otherwise lines on standard error; False shows nothing."""
+"""How to show progress: True shows a bar, False shows nothing, and a callback receives the reports.
+
+The bar needs tqdm (``tqdm.auto``); without it, lines are written to standard error.
+"""
 
 
 _FORMAT = "{desc}{percentage:3.0f} %|{bar}| {elapsed}"
@@ -24,7 +27,7 @@ def ignore_progress(_fraction: float, _message: str) -> None:
 
 @contextmanager
 def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
-    """Yield the progress callback for a solver."""
+    """Yield the progress callback for a solver, and close its bar at the end."""
     if callable(progress):
         yield progress
     elif not progress:
@@ -41,7 +44,7 @@ def open_progress(progress: Progress) -> Iterator[ProgressCallback]:
 
 
 class _Bar(Protocol):
-    """A bar of tqdm."""
+    """Interface of a progress bar of tqdm."""
 
     n: float
 
@@ -52,12 +55,12 @@ class _Bar(Protocol):
 
 def _move_bar(bar: _Bar, fraction: float, message: str) -> None:
     bar.set_description(message, refresh=False)
-    # Progress of a solver may step back, bars may not.
+    # The progress of a solver may step back, but a bar may not.
     bar.update(max(0.0, round(100.0 * fraction) - bar.n))
 
 
 class _Lines:
-    """Progress as lines on standard error: one for each new step, and for each further 10 %."""
+    """Progress as lines on standard error: one line for each new step, and one for each further 10 %."""
 
     def __init__(self) -> None:
         self._last: tuple[int, str] | None = None

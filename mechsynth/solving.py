@@ -1,4 +1,4 @@
-"""Solution of problems in this process or by a service."""
+"""Solve problems in this process or by a running service."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def solve(
     Cancelled
         If ``cancel`` was set.
     """
-    # On demand: the solvers take seconds to load.
+    # Imported on demand, because the solvers take seconds to load.
     from synthesis.dispatch import solve as solved
 
     checked = check_problem(problem)
@@ -99,7 +99,9 @@ class Client:
         progress: Progress = False,
         cancel: threading.Event | None = None,
     ) -> Result:
-        """Solve a problem and wait for the answer. An interrupt cancels the job, as ``cancel`` does.
+        """Solve a problem and wait for the answer.
+
+        Parameters are those of the function :func:`solve`. An interrupt cancels the job, as ``cancel`` does.
 
         Raises
         ------
@@ -118,17 +120,17 @@ class Client:
         return _build_result(job)
 
     def result(self, job_id: str) -> Result:
-        """Return the answer of an ended job; raises as :meth:`solve`."""
+        """Return the answer of a finished job; raises as :meth:`solve`."""
         return _build_result(self.service.job(job_id).with_result())
 
 
 class AsyncClient:
-    """The client for event loops; cancelling a waiting task cancels its job.
+    """The client for event loops. Cancelling a waiting task cancels its job.
 
     Parameters
     ----------
     url, key, timeout_s
-        As of :class:`Client`.
+        As for :class:`Client`.
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout_s: float = 60.0) -> None:
@@ -158,7 +160,7 @@ class AsyncClient:
         return _build_result(job)
 
     async def result(self, job_id: str) -> Result:
-        """Return the answer of an ended job; raises as :meth:`Client.solve`."""
+        """Return the answer of a finished job; raises as :meth:`Client.solve`."""
         return _build_result((await self.service.job(job_id)).with_result())
 
 

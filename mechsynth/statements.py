@@ -18,7 +18,7 @@ Problem = ProblemBase | Mapping[str, object]
 class InvalidProblem(ValueError):
     """An invalid or contradictory problem.
 
-    ``errors`` has the faults by JSON pointer relative to the problem: ``/positions/1/x``.
+    ``errors`` maps JSON pointers relative to the problem, such as ``/positions/1/x``, to messages.
     """
 
     def __init__(self, errors: Mapping[str, str]) -> None:
@@ -47,7 +47,7 @@ def check_problem(problem: Problem) -> ProblemBase:
     if kind not in KINDS:
         raise InvalidProblem({"/kind": f"Kind must be given and be one of: {', '.join(KINDS)}."})
     read, faults = check_fields(kind, statement)
-    # Contradictions can be looked for only among valid fields.
+    # Only valid fields can be checked for contradictions.
     faults = faults or check_consistency(read)
     if faults:
         raise InvalidProblem(_merge_by_path(faults))

@@ -1,1 +1,1 @@
-"""Who may ask, how a job lives, how an answer looks: the HTTP service."""
+"""The HTTP service: access control, jobs and batches, and the form of the answers."""

@@ -1,4 +1,4 @@
-"""Faults of client input: the place as a JSON pointer (RFC 6901), and the reason as a sentence."""
+"""Descriptions of faults in client input: the place as a JSON pointer (RFC 6901), and the reason as a sentence."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Models = Mapping[str, object]
 def make_sentence(text: str) -> str:
     """Format a detail as a sentence, with a capital and a full stop.
 
-    >>> sentence("equal to position 0")
+    >>> make_sentence("equal to position 0")
     'Equal to position 0.'
     """
     return f"{text[:1].upper()}{text[1:].rstrip('.')}."
@@ -67,7 +67,8 @@ def describe_faults(faults: Iterable[Mapping[str, Any]], body: object, models: M
         placed.setdefault((locate_fault(fault, body), _explain_fault(fault)), []).append(fault)
     described: list[tuple[str, str]] = []
     for (path, detail), same in placed.items():
-        # Only for reported faults: a body may have thousands of unknown fields, and comparing their names takes long.
+        # Similar names are searched only for faults that are reported: a body may have thousands of unknown fields, and
+        # comparing names is slow.
         if same[0]["type"] == "extra_forbidden" and len(described) < MAX_FAULTS:
             detail = _explain_unknown_field(same, models)
         described.append((path, detail))
@@ -105,7 +106,7 @@ def list_known_fields(annotation: object, steps: Iterable[str | int]) -> list[st
     for step in steps:
         named = [type_ for type_ in types if len(types) > 1 and _is_named(type_, step)]
         below = [member for type_ in types for member in _list_types_below(type_, step)]
-        # Validators of pydantic add steps that are neither.
+        # Validators of pydantic add steps that name neither a union member nor a field; such a step changes nothing.
         types = named or below or types
     models = [type_ for type_ in types if isinstance(type_, type) and issubclass(type_, BaseModel)]
     return [field.alias or name for model in models for name, field in model.model_fields.items()]

@@ -25,7 +25,13 @@ def dump_problem(problem: ProblemBase) -> str:
 
 
 def load_stored_problem(kind: str, stored: str) -> ProblemBase:
-    """The problem that :func:`dump_problem` has written; raises pydantic's ValidationError where it is none."""
+    """Parse a problem from the stored form that :func:`dump_problem` returns.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If this version does not accept the text as a problem of the kind.
+    """
     problem: ProblemBase = KINDS[kind].problem.model_validate_json(stored)
     return problem
 

@@ -35,7 +35,7 @@ def list_symbols(problem: ProblemBase) -> dict[Dimension, str]:
     if problem.force_units == "si":
         symbols |= {Dimension.FORCE: "N", Dimension.STIFFNESS: "N/m", Dimension.MASS: "kg", Dimension.TORQUE: "N·m"}
     elif problem.force_units == "consistent":
-        symbols = dict.fromkeys(symbols, "")  # the units of such a set are the client's
+        symbols = dict.fromkeys(symbols, "")  # the client alone knows the units of this set
     return {
         Dimension.LENGTH: length,
         Dimension.AREA: f"{length}²",

@@ -102,7 +102,8 @@ def _round_designs(problem: LinkageProblem, result: AnyResult, kind: AnyKind) ->
     """Round designs to the grid; if they are ranked by a measured quantity, round only the best ones."""
     if problem.rank_by not in MAX_EXAMINED:
         return round_designs(problem, result, kind.nearly)
-    # Rounding is expensive, so round only as many designs as may be listed, plus spare ones without a neighbour.
+    # Rounding is expensive, so round only as many designs as may be listed, plus some in reserve: a design may have no
+    # neighbour on the grid.
     first = sort_by_measure(problem, result.designs)[: max(problem.max_designs, MAX_ROUNDED)]
     every = problem.model_copy(update={"max_designs": len(first) or 1})
     rounded = round_designs(every, result.model_copy(update={"designs": first}), kind.nearly)
@@ -111,7 +112,7 @@ def _round_designs(problem: LinkageProblem, result: AnyResult, kind: AnyKind) ->
 
 
 def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation, kind: AnyKind) -> AnyResult:
-    """Add designs found by ignoring constraints, or the nearest miss, to an answer without designs."""
+    """Return an answer without designs, completed by designs found by ignoring constraints or by the nearest miss."""
     if not found.sound:
         miss = found.nearest_miss
         reached = "" if miss is None or kind.easing is None else kind.easing.describe_reached(miss.reachable)
@@ -132,7 +133,10 @@ def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation
 
 
 def warm_up() -> None:
-    """Compile the kernels of the most common jobs or load them from cache; :func:`warm_up_rest` does the others."""
+    """Compile the kernels of the most common jobs, or load them from the cache.
+
+    :func:`warm_up_rest` loads all other kernels.
+    """
     for kind in KINDS.values():
         if kind.is_first_loaded:
             solve(kind.problem.model_validate(kind.examples[0]))
@@ -141,26 +145,29 @@ def warm_up() -> None:
 def warm_up_rest() -> None:
     """Load everything else that the first jobs may need: the analysis core, and the solvers of all kinds.
 
-    Each is loaded once its kernels have been compiled elsewhere: compiling them here would delay jobs.
+    Wait until another process has compiled the kernels of each part, because compiling them here would delay jobs.
     """
     waiting = [LINKAGES_PART, *KINDS]
     while waiting:
         # A mark on disk shows that another process has compiled the kernels.
         for part in [part for part in waiting if is_compiled(part)]:
             load_linkages() if part == LINKAGES_PART else _load_kernels(part)
-            # The slice above is a copy, so removing from the list is safe.
+            # The loop runs over a new list, so removing from `waiting` is safe.
             waiting.remove(part)
         if waiting:
             time.sleep(POLL_PERIOD_S)
 
 
 def load_linkages() -> None:
-    """Compile the kernels of the analysis of linkages or load them from cache."""
+    """Compile the kernels of the analysis of linkages, or load them from the cache."""
     warm.warm_up()
 
 
 def compile_kind(name: str) -> None:
-    """Compile all kernels that the solver of a kind may need: those that a worker loads, and those of its examples."""
+    """Compile all kernels that the solver of a kind may need.
+
+    These are the kernels that a worker loads, and those that the examples of the kind use.
+    """
     kind = KINDS[name]
     _load_kernels(name)
     if kind.warm_up is not None:
@@ -169,9 +176,9 @@ def compile_kind(name: str) -> None:
 
 
 def compile_constraints() -> None:
-    """Compile kernels that no example uses, by the problems that the kinds declare for it.
+    """Compile kernels that no example uses, by solving the problems that the kinds declare for this purpose.
 
-    They are those for forces, manufacture, workspaces, and sixbars of each type.
+    These are the kernels for forces, manufacture, workspaces, and sixbars of each type.
     """
     for kind in KINDS.values():
         for statement in kind.list_warm_up_problems():

@@ -2,8 +2,9 @@
 
 The workspace is relaxed first: the clearance before box and obstacles, and these before the zones of pivots, so that
 the nearest design avoids as many obstacles as possible and has its pivots in their zones. Then the constraints are
-dropped one after another, and the problem is solved again. The value of the dropped constraint in those designs is what
-can be reached with all others. If that gives no design, all constraints are dropped together.
+dropped one after another, and the problem is solved again. The value of the dropped quantity in those designs is the
+value that can be reached while all other constraints hold. If that gives no design, all constraints are dropped
+together.
 
 A single limit that cannot be reached is then approached by bisection between the reached and the required value: by
 continuation from known designs if the kind supports it, otherwise by a whole search. A design found without a
@@ -11,7 +12,8 @@ constraint that nevertheless satisfies it is a regular answer. Kinds that declar
 without their tolerance, and kinds that declare an ``easing`` (dwells) with an easier task. All other problems have
 their nearest miss among the designs that were driven and failed.
 
-:mod:`synthesis.results.time_budget` limits the time of all of this; the best miss found by then is reported.
+:mod:`synthesis.results.time_budget` limits the time of the whole search. If the time is up, the best miss found so far
+is reported.
 """
 
 from __future__ import annotations
@@ -43,7 +45,10 @@ Continuation = MeteredSearch[[ProblemBase, Sequence[DrivenDesign], Progress], Se
 """The continuation of a kind (:attr:`synthesis.model.kind.Kind.nearer`), within the time budget."""
 
 Continue = Callable[[LinkageProblem, Sequence[DrivenDesign], Progress], Sequence[DrivenDesign] | None]
-"""Finds designs nearer to a stricter limit from those at hand; None if it does not support the problem."""
+"""Callable that finds designs nearer to a stricter limit from known designs.
+
+It returns None if it does not support the problem.
+"""
 
 MAX_DESIGNS = 20
 """Maximum number of designs of each relaxed problem, the likely nearest ones first."""
@@ -52,10 +57,10 @@ MAX_DRIVEN = 10
 """The same maximum for linkages with a driver, which take several times as long to find and to verify."""
 
 UNMEASURED_GAP = 1.0
-"""Relative gap of a violated constraint without a measure, such as a class of linkage: as large as a whole limit."""
+"""Relative gap of a violated constraint without a measure, such as a class of linkage: as large as the whole limit."""
 
 RANK_BY = {"min_transmission_angle": "transmission_angle", "link_length": "size"}
-"""Order of designs if a constraint is dropped, so that those close to it come first; by quality for all others."""
+"""Value of ``rank_by`` by dropped constraint, so that designs close to its limit come first; otherwise quality."""
 
 MAX_APPROACHES = 4
 """Maximum number of bisection steps: they reduce a gap to a sixteenth."""
@@ -64,16 +69,19 @@ LIMIT_ACCURACY = 0.005
 """Sufficient accuracy of a reachable value, as a share of its limit, or of the task's size for a zone."""
 
 NEAR_GAP = 0.05
-"""Relative violation of a single constraint up to which it is the only obstacle, so that no other is dropped."""
+"""Relative violation of a dropped constraint up to which no other constraint is dropped: it is the only obstacle."""
 
 MAX_SINGLE_CONSTRAINTS = 2
-"""Maximum number of constraints of which each is dropped in turn in any case."""
+"""Maximum number of constraints up to which each one is dropped in turn.
+
+With more constraints, only those are dropped that the best unconstrained design violates.
+"""
 
 REACHABLE_MEASURES: Mapping[str, tuple[Callable[[DrivenDesign], float], Callable[[Sequence[float]], float]]] = {
     "min_transmission_angle": (lambda design: design.metrics.min_transmission_angle, max),
     "max_link_ratio": (lambda design: design.metrics.link_ratio, min),
 }
-"""Reported measures by constraint, and the function that selects the best value reachable with all others."""
+"""Reported measure by constraint, and the function that selects the best of several reached values."""
 
 DRIVER_PIVOT_REGION = "driver_pivot_region"
 """Name of the zone of a driver's pivot among the constraints."""
@@ -89,14 +97,14 @@ CHECKED_CONSTRAINTS: dict[str, str] = {
     "moving_pivot_region": "moving_pivot_region",
     "driver_pivot_region": DRIVER_PIVOT_REGION,
 } | {name: f"max_{name}" for name in FORCE_NAMES}
-"""Constraint by name of its check; the zone of a driver's pivot counts as one."""
+"""Constraint by the name of its check; the zone of a driver's pivot counts as a constraint."""
 
 DRIVER_JOINTS = "O6", "C", "D"
 """Joints of a driver dyad, to which the zones of the linkage's pivots do not apply."""
 
 
 class _Miss(NamedTuple, Generic[Design]):
-    """A design, its failed checks, and the size of the task, by which distances from zones are measured."""
+    """A design, its failed checks, and the size of the task, to which distances from zones are related."""
 
     design: Design
     broken: list[Check]
@@ -125,7 +133,7 @@ def find_nearest_miss(
     problem : ProblemBase
         A consistent problem.
     kind : Kind
-        Its kind, whose solver found no design; it declares by which strategies the task can be relaxed.
+        Its kind, whose solver found no design. It declares the strategies by which the task can be relaxed.
     progress : callable
         Progress callback.
     allowance : SearchBudget, optional
@@ -171,15 +179,16 @@ def _sort_misses(misses: Iterable[_Miss[Design]]) -> list[_Miss[Design]]:
 
 
 def _continue_nothing(_problem: ProblemBase, _designs: Sequence[DrivenDesign], _progress: Progress) -> None:
-    """Return None: the continuation of kinds that support none."""
+    """Return None, as the continuation of a kind that supports none."""
 
 
 def _relax_workspace(
     problem: LinkageProblem, solve: Solve, progress: Progress
 ) -> tuple[list[DrivenDesign], list[_Miss[DrivenDesign]]]:
-    """Solve the problem with a relaxed workspace; return designs that fit into the workspace anyway, and the others.
+    """Solve the problem with a relaxed workspace.
 
-    More of the workspace is dropped only if dropping less gives no design.
+    Return the designs that fit into the workspace anyway, and those that do not. More of the workspace is dropped only
+    if dropping less gives no design.
     """
     space = problem.space
     if space is None:
@@ -215,14 +224,15 @@ def _drop_workspace_checks(design: DrivenDesign) -> DrivenDesign:
 def _relax_constraints(
     problem: LinkageProblem, solve: Solve, nearer: Continuation, progress: Progress, reachable: JsonObject
 ) -> tuple[list[DrivenDesign], list[_Miss[DrivenDesign]]]:
-    """Solve the problem without one of its constraints, or without all if that gives no design.
+    """Solve the problem without one of its constraints, or without all of them if that gives no design.
 
-    Return the designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
+    Return the designs that satisfy all constraints anyway, and those that do not. The reached values are stored in
+    ``reachable``.
     """
     stated = _list_constraints(problem)
     free: list[_Miss[DrivenDesign]] = []
     if len(stated) > MAX_SINGLE_CONSTRAINTS:
-        # With many constraints drop only those one by one that the best design without any of them violates.
+        # With many constraints, drop one by one only those that the best unconstrained design violates.
         relaxed = _solve_relaxed(problem, stated, solve, progress)
         if relaxed.sound or not relaxed.misses:
             return relaxed.sound, []
@@ -272,7 +282,7 @@ def _relax_constraints(
 def _relax_tolerance(
     problem: ProblemBase, ratio: RatioCheck | None, solve: Solve, progress: Progress, reachable: JsonObject
 ) -> list[_Miss[VerifiedDesign]]:
-    """Find the most accurate gears if none are within the tolerance."""
+    """Find the most accurate gears, if none are within the tolerance; store their error in ``reachable``."""
     if ratio is None or not isinstance(problem, HasTolerance) or problem.tolerance is None:
         return []
     update = {"tolerance": None, "rank_by": "error", "include_failed": False, "max_designs": 1}
@@ -295,13 +305,14 @@ def _ease_task(
 ) -> tuple[list[VerifiedDesign], list[_Miss[VerifiedDesign]]]:
     """Find the largest possible share of the task by bisection, for kinds whose task can be eased.
 
-    Return designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
+    Return the designs that satisfy all constraints anyway, and those that do not. The share reached is stored in
+    ``reachable``.
     """
     if kind.easing is None or kind.verify is None:
         return [], []
     reached, unreached = 0.0, 1.0
     misses: list[_Miss[VerifiedDesign]] = []
-    # Bisection in the share of the required dwell.
+    # Bisect the share of the task.
     for n in range(MAX_APPROACHES):
         if misses and not solve.fits:
             break
@@ -310,7 +321,7 @@ def _ease_task(
         span = scale_progress(progress, n / MAX_APPROACHES, (n + 1) / MAX_APPROACHES)
         eased = kind.easing.ease(problem, tried)
         found = solve(eased.model_copy(update=update), span).designs
-        # No design at all with this dwell: it is an upper bound.
+        # Not even this share has a design, so it is an upper bound.
         if not found:
             unreached = tried
             continue
@@ -333,13 +344,13 @@ def _list_failed(problem: ProblemBase, solve: Solve, progress: Progress) -> list
 
 
 def _list_constraints(problem: LinkageProblem) -> list[str]:
-    """Return the constraints beyond a sound motion that differ from their defaults."""
+    """Return the names of constraints that differ from their defaults, except those of a sound motion."""
     constraints = problem.constraints
     plain = type(constraints)()
     stated = [
         name
         for name in Constraints.model_fields
-        # Branch and order are part of a sound motion; without them a design would be useless.
+        # Branch and order are never relaxed, because a design without a sound motion is useless.
         if name not in ("same_branch", "in_order") and getattr(constraints, name) != getattr(plain, name)
     ]
     return stated if _get_driver_zone(problem) is None else [*stated, DRIVER_PIVOT_REGION]
@@ -351,7 +362,7 @@ def _get_driver_zone(problem: LinkageProblem) -> Region | None:
 
 
 def _drop_constraints(problem: LinkageProblem, names: Sequence[str]) -> dict[str, object]:
-    """Return the changed fields of a problem without these constraints."""
+    """Return the fields of a problem that change if these constraints are dropped."""
     plain = type(problem.constraints)()
     left_out = {name: getattr(plain, name) for name in names if name != DRIVER_PIVOT_REGION}
     fields: dict[str, object] = {"constraints": problem.constraints.model_copy(update=left_out)}
@@ -361,7 +372,19 @@ def _drop_constraints(problem: LinkageProblem, names: Sequence[str]) -> dict[str
 
 
 class _RelaxedResult(NamedTuple):
-    """Designs of a problem without some of its constraints."""
+    """Result of a problem without some of its constraints.
+
+    Attributes
+    ----------
+    designs : list
+        All designs, as solved.
+    sound : list
+        Designs that satisfy all constraints anyway.
+    misses : list
+        Designs that violate some constraint.
+    complete : bool
+        Whether the search found every solution.
+    """
 
     designs: list[DrivenDesign]
     sound: list[DrivenDesign]
@@ -397,10 +420,10 @@ def _list_broken_constraints(miss: _Miss[DrivenDesign]) -> list[str]:
 def _approach_limit(
     problem: LinkageProblem, misses: Sequence[_Miss[DrivenDesign]], further: Continue, spent: Solve | Continuation
 ) -> list[_Miss[DrivenDesign]] | None:
-    """Bring the nearest miss of one limit closer to it, as long as designs are found and another step fits the budget.
+    """Bring the design that misses only one limit closer to it, while designs are found and the budget permits.
 
-    Designs that violate nothing are returned, best first, if any are found. None if there is no such miss, or if
-    ``further`` does not support the problem.
+    Return the designs that satisfy all constraints, best first, if any are found; otherwise the nearest miss. Return
+    None if no design misses only one limit, or if ``further`` does not support the problem.
     """
     # A design that violates several limits would need a search in several directions.
     single = _sort_misses(miss for miss in misses if len(miss.broken) == 1)
@@ -440,7 +463,7 @@ def _ignore_progress(_fraction: float, _message: str) -> None:
 
 
 def _replace_limit(problem: LinkageProblem, check: str, limit: float) -> dict[str, object] | None:
-    """Return the changed fields of a problem with another limit for a check; None if the check has no limit."""
+    """Return the fields of a problem that change if a check gets another limit; None if it cannot have one."""
     constraints: Constraints = problem.constraints
     lengths = constraints.link_length
     update: dict[str, object]
@@ -467,7 +490,7 @@ def _replace_limit(problem: LinkageProblem, check: str, limit: float) -> dict[st
 
 
 def check_constraints_of_design(problem: LinkageProblem, design: DrivenDesign) -> _Miss[DrivenDesign]:
-    """Check a design of a relaxed problem against the original constraints, measured on the answer."""
+    """Check a design of a relaxed problem against the original constraints, by the measured values of its answer."""
     joints, ground = design.mechanism.skeleton.joints, _list_ground_joints(design)
     # P and the driver's joints are not subject to the zones of the linkage's pivots.
     apart = {"P", *(() if problem.driver is None else DRIVER_JOINTS)}
@@ -495,7 +518,7 @@ def _list_ground_joints(design: DrivenDesign) -> list[str]:
 
 
 def _compute_relative_gap(check: Check, size: float) -> float:
-    """Return a gap as a share of its unit of measure."""
+    """Return the gap of a failed check, relative to its limit or to the size of the task."""
     # A failed check without numbers counts as a whole limit.
     if check.value is None or check.limit is None:
         return UNMEASURED_GAP
@@ -503,12 +526,12 @@ def _compute_relative_gap(check: Check, size: float) -> float:
 
 
 def _choose_unit(check: Check, size: float) -> float:
-    """Return the unit of a gap: its limit, or the size of the task if the limit is 0, as for zones."""
+    """Return the value to which a gap is related: its limit, or the size of the task if that is 0, as for zones."""
     return abs(check.limit or 0.0) or (size if check.dimension == LENGTH else 1.0)
 
 
 def _measure_task(problem: LinkageProblem) -> float:
-    """Return the size of a task in length units; for a task without size, that of its zones."""
+    """Return the size of a task in length units; for a task without size, the size of its zones, or 1."""
     # Functions, for example, have no size, but may have zones.
     if problem.task_size is not None:
         return problem.task_size

@@ -82,11 +82,17 @@ else:
             custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
         ),
     ]
-    """Any problem, identified by its field ``kind``."""
+    """Any problem; its field ``kind`` determines its model."""
 
 
 def parse_problem(statement: JsonObject) -> Problem:
-    """Parse a JSON-like statement into a problem; raise pydantic's ValidationError for an ill-formed one."""
+    """Parse a JSON-like statement into a problem.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        For an ill-formed statement.
+    """
     return _PROBLEM.validate_python(statement)
 
 

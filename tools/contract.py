@@ -1,9 +1,9 @@
 """Write the OpenAPI document and the contract of the API: ``python -m tools.contract``.
 
-The document goes to ``var/openapi.json``, to be read. The contract is committed: one line for each operation and each
-schema, with the names of its parameters or fields and a digest of its whole shape. A test compares it with the service,
-so that no field, type, limit or default changes unnoticed, and so that each process writes the same order. Descriptions
-are free to change.
+The document is written to ``var/openapi.json`` for reading. The contract is committed to the repository. It has one
+line for each operation and each schema, with the names of its parameters or fields and a digest of its whole shape. A
+test compares the contract with the service, so that no field, type, limit or default changes unnoticed and every
+process writes the same order. Descriptions are not part of the contract and may change freely.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ DOCUMENT = ROOT / "var" / "openapi.json"
 CONTRACT = ROOT / "tests" / "service" / "api" / "contract.txt"
 
 PROSE = frozenset({"description", "title", "summary", "example", "examples"})
-"""Keywords of OpenAPI that say nothing about a type."""
+"""Keywords of OpenAPI that document a schema and do not affect its type."""
 
 NAMED = frozenset({"properties", "schemas"})
-"""Keywords below which keys are names of fields and schemas, and no keywords."""
+"""Keywords of OpenAPI whose value maps names of fields or schemas, so that the keys below them are not keywords."""
 
 
 def strip_prose(document: JsonObject) -> JsonObject:

@@ -1,10 +1,12 @@
-"""All solutions of a system for one set of general parameters, found from a single one.
+"""Computation of all solutions of a parametrized polynomial system from one known solution, by monodromy.
 
-While the parameters go around a closed loop, the solutions change places: one that is known comes back as another one
-of the same parameters. All that are known are followed around random triangles, and what is new at their ends joins
-them, until there are as many as theory says and some more loops have found none (monodromy: Duff et al. 2019,
-doi:10.1093/imanum/dry017). That takes seconds to minutes and is done once; what it finds is where every problem of the
-same sort begins (:mod:`synthesis.numerics.continuation`).
+As the parameters move around a closed loop, the solutions are permuted, so a known solution generally returns as
+another solution for the same parameters. All known solutions are tracked around random triangles in parameter space,
+and new end points are added to them. The search ends when the number of solutions known from theory has been found and
+several further loops have added none (Duff et al. 2019, doi:10.1093/imanum/dry017).
+
+The computation takes seconds to minutes and is done once. Its solutions are the start points from which homotopy
+continuation solves every problem of the same type (:mod:`synthesis.numerics.continuation`).
 """
 
 from __future__ import annotations
@@ -30,25 +32,32 @@ def all_solutions(
     most_loops: int,
     spread: float = 1.0,
 ) -> StoredStart:
-    """All solutions for the parameters ``p``.
+    """Find all solutions for the parameters ``p``.
 
     Parameters
     ----------
-    y, p
-        One solution, shape (unknowns,), and its parameters, shape (parameters,).
+    y : complex, shape (unknowns,)
+        One known solution for ``p``.
+    p : complex, shape (parameters,)
+        Parameters of the system.
     followed : callable
-        Of solutions, parameters and other parameters: the solutions for those that were reached.
+        Takes solutions, their parameters and the target parameters; returns the solutions for the target parameters
+        whose paths were tracked to the end.
     distinct : callable
-        Of ends of paths for ``p``: those that are solutions, each once and in their order.
-    count, quiet_loops, most_loops : int
-        How many there are; loops without a new one before the search ends; loops at most.
+        Takes end points of paths for ``p``; returns those that are solutions, without duplicates, in a fixed order.
+    count : int
+        Number of solutions known from theory.
+    quiet_loops : int
+        Number of consecutive loops without a new solution after which the search ends.
+    most_loops : int
+        Maximum number of loops.
     spread : float
-        Size of the parameters at the corners of the loops.
+        Scale of the random parameters at the corners of the loops.
 
     Raises
     ------
     RuntimeError
-        When the loops do not come to ``count`` solutions; another seed will do.
+        If ``count`` solutions are not found within ``most_loops`` loops. Try another seed.
     """
     found, quiet = y[None], 0
     for loop in range(most_loops):

@@ -1,6 +1,6 @@
-"""Draws the assemblies of ``docs/mechanisms/parts.md`` anew: ``python -m tools.parts_pictures``, seconds.
+"""Redraw the assemblies shown in ``docs/mechanisms/parts.md``: ``python -m tools.parts_pictures`` (takes seconds).
 
-Each is a design of a problem that is stated here, made as a request would have it.
+Each assembly is that of a design for a problem defined in this module, built with the options of a request for parts.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FOURBAR: dict[str, Any] = {
     "length_unit": "mm",
 }
 SIZES: dict[str, Any] = {"process": "print", "width": 15.0, "pin": 5.0, "thickness": 4.0}
-"""Of the request that begins the page."""
+"""Part sizes in the first request on the page: lengths in the unit of the problem, and the process."""
 
 CAM: dict[str, Any] = {
     "kind": "cam",
@@ -77,11 +77,11 @@ PICTURES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
         {},
     ),
 }
-"""By name: a title, a problem, and what is asked of its parts."""
+"""Title, problem and requested part options of each picture, by the name of its file."""
 
 
 def drawn(title: str, problem: dict[str, Any], query: dict[str, Any]) -> tuple[str, str]:
-    """The drawing of an assembly, and its picture."""
+    """Solve a problem and return the assembly sheet and the isometric picture of its first design, as SVG."""
     stated = parse_problem({**problem, "max_designs": 1})
     design = solve(stated, lambda _fraction, _message: None).designs[0]
     assembly = make_parts(design, stated, PartsQuery(**query))
@@ -90,7 +90,7 @@ def drawn(title: str, problem: dict[str, Any], query: dict[str, Any]) -> tuple[s
 
 
 def main() -> None:
-    """Write the files."""
+    """Write all pictures to the folder of the documentation."""
     for name, (title, problem, query) in PICTURES.items():
         drawing, picture = drawn(title, problem, query)
         (DOCS / f"parts_{name}.svg").write_text(drawing, encoding="utf-8")

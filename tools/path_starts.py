@@ -1,9 +1,9 @@
-"""Makes the starts of path problems anew: all solutions for one set of general complex parameters, by monodromy.
+"""Recompute the start points of path problems: all solutions for generic complex parameters, by monodromy.
 
-``python -m tools.path_starts nine`` draws a fourbar with complex dimensions and nine points that it goes through, and
-finds one solution of each of the other 1441 orbits (a minute). ``python -m tools.path_starts five`` does the same for
-five points on given pivots, which have 36 solutions (seconds). :mod:`synthesis.kinds.path.exact.continuation_starts`
-reads the files.
+``python -m tools.path_starts nine`` chooses a random fourbar with complex dimensions and nine points on its coupler
+curve, and finds one solution of each of the other 1441 orbits in about a minute.
+``python -m tools.path_starts five`` does the same for five points with given fixed pivots, which have 36 solutions, in
+seconds. :mod:`synthesis.kinds.path.exact.continuation_starts` reads the files.
 """
 
 from __future__ import annotations
@@ -23,34 +23,36 @@ from synthesis.numerics.continuation import END_REACHED, ParameterPath, follow
 from tools.monodromy import all_solutions
 
 NINE_SEED, FIVE_SEED = 9, 5
-"""Of the stored files."""
+"""Seeds of the random generator for the stored files."""
 
 SAME_ORBIT = 1e-7
-"""Orbits whose keys agree to this share are the same: at the start all solutions are well conditioned."""
+"""Relative tolerance within which two keys belong to one orbit, and maximum residual of a solution. It can be this
+small because all solutions are well conditioned for generic parameters."""
 
 SAME_SOLUTION = 1e-8
-"""Solutions that agree to this share are one: at the start all are well conditioned."""
+"""Relative tolerance within which two solutions are identical, and maximum residual of a solution. It can be this small
+because all solutions are well conditioned for generic parameters."""
 
 FOLLOWING_TOLERANCE = 1e-3
-"""Of the prediction on the way around a loop, which may be rough: the corners are refined."""
+"""Tolerance of the predictor along a loop. It may be coarse, because the solutions are refined at the corners."""
 
 NINE_QUIET_LOOPS, NINE_MOST_LOOPS = 2, 60
 FIVE_QUIET_LOOPS, FIVE_MOST_LOOPS = 12, 80
-"""Loops without a new solution before the search ends, and loops at most."""
+"""Number of consecutive loops without a new solution after which the search ends, and maximum number of loops."""
 
 THREADS = 2
 
 NEWTON_STEPS = 60
-"""Many more than Newton's method takes from a random point to a solution of two equations."""
+"""Number of Newton iterations, far more than needed from a random point to a solution of two equations."""
 
 
 def solve_nine_points(rng: np.random.Generator) -> StoredStart:
-    """One solution of each orbit of a random problem of nine points.
+    """Find one solution of each orbit of a random nine-point problem.
 
     Raises
     ------
     RuntimeError
-        When the loops do not come to 1442 orbits; another seed will do.
+        If the loops do not find all 1442 orbits. Try another seed.
     """
     y, p = nine_point_problem(rng)
     straight = np.zeros(nine.PARAMETER_COUNT, np.complex128)
@@ -83,12 +85,12 @@ def solve_nine_points(rng: np.random.Generator) -> StoredStart:
 
 
 def solve_five_points(rng: np.random.Generator) -> StoredStart:
-    """All solutions of a random problem of five points on given pivots.
+    """Find all solutions of a random problem of five points with given fixed pivots.
 
     Raises
     ------
     RuntimeError
-        When the loops do not come to 36 solutions; another seed will do.
+        If the loops do not find all 36 solutions. Try another seed.
     """
     y, p = five_point_problem(rng)
     straight = np.zeros(five.PARAMETER_COUNT, np.complex128)
@@ -115,9 +117,10 @@ def solve_five_points(rng: np.random.Generator) -> StoredStart:
 
 
 def nine_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """A solution that was drawn, and the parameters that it solves: y and p, shape (16,) each.
+    """Return a random solution y of the nine-point system and parameters p that it solves, shape (16,) each.
 
-    For given dyads and rotation both equations of a point are bilinear in (δ, δ̄), with the same quadratic term.
+    For given dyads and a given rotation, both equations of a point are bilinear in (δ, δ̄) with the same quadratic
+    term. Their difference is linear, which leaves one quadratic equation for δ.
     """
 
     def drawn() -> Complex:
@@ -142,7 +145,10 @@ def nine_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
 
 def five_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """Random unknowns and pivots, and the points for which they are a solution, by Newton's method point by point."""
+    """Return random unknowns, and parameters with random pivots that these unknowns solve.
+
+    Newton's method determines each point separately from the unknowns and the pivots.
+    """
 
     def drawn(count: int) -> Complex:
         return np.asarray(rng.normal(size=(count, 2)) @ np.array([1.0, 1.0j]))
@@ -163,7 +169,10 @@ def five_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
 
 def _smallest_member(y: Complex, p: Complex) -> Complex:
-    """Of each orbit the solution with the shortest vectors, which rounding treats best: shape (orbits, 16)."""
+    """Return the cognate of each solution with the shortest vectors, which minimizes rounding errors.
+
+    The result has shape (orbits, 16).
+    """
     members = nine.construct_cognates(y, p)
     size = np.abs(members[..., :8]).max(axis=-1)
     members = members[np.arange(len(y)), np.where(np.isfinite(size), size, np.inf).argmin(axis=-1)]
@@ -171,7 +180,7 @@ def _smallest_member(y: Complex, p: Complex) -> Complex:
 
 
 def _distinct_orbits(y: Complex, p: Complex) -> Complex:
-    """The solutions without those whose orbit has been met before in the list."""
+    """Return the first solution of each orbit, in the given order."""
     keys = nine.compute_orbit_keys(y, p)
     size = np.abs(keys).max(axis=-1)
     kept: list[int] = []
@@ -182,7 +191,7 @@ def _distinct_orbits(y: Complex, p: Complex) -> Complex:
 
 
 def _distinct(y: Complex) -> Complex:
-    """The solutions without those that have been met before in the list."""
+    """Return the solutions without duplicates, in the given order."""
     kept: list[int] = []
     for n in range(len(y)):
         if not kept or (np.abs(y[kept] - y[n]).max(axis=1) > SAME_SOLUTION * np.abs(y[n]).max()).all():
@@ -191,7 +200,7 @@ def _distinct(y: Complex) -> Complex:
 
 
 def main() -> None:
-    """Make one start anew and store it."""
+    """Recompute the start points of one problem and store them."""
     made_by = {
         "nine": (solve_nine_points, nine.compute_residuals, NINE_SEED),
         "five": (solve_five_points, five.compute_residuals, FIVE_SEED),

@@ -1,9 +1,11 @@
-"""Makes the start of Watt II sixbars through nine pairs anew: all for one set of general complex turns, by monodromy.
+"""Recompute the start points of Watt II sixbars for nine pairs: all solutions for generic complex rotations.
 
-``python -m tools.watt_start`` takes a quarter of an hour of a processor. A sixbar with complex dimensions is drawn with
-turns of its input, and the turns of its output follow from two quadratic equations each; all others are met on ways
-around loops (:mod:`tools.monodromy`). :mod:`synthesis.kinds.function.nine_pairs.continuation` reads the file, which has
-the solutions in single precision: Newton's method brings the other digits back.
+``python -m tools.watt_start`` takes about a quarter of an hour of processor time. It chooses a random sixbar with
+complex dimensions and random rotations of its input. Two quadratic equations give each rotation of the output. All
+other solutions are found by monodromy (:mod:`tools.monodromy`).
+
+:mod:`synthesis.kinds.function.nine_pairs.continuation` reads the file. It stores the solutions in single precision, and
+Newton's method restores the remaining digits.
 """
 
 from __future__ import annotations
@@ -27,25 +29,25 @@ from synthesis.numerics.continuation import END_REACHED, ParameterPath, follow
 from tools.monodromy import all_solutions
 
 SEED = 9
-"""Of the stored file."""
+"""Seed of the random generator for the stored file."""
 
 SPREAD = 1.0
-"""Size of turns, less 1, at the corners of loops."""
+"""Scale of the parameters, which are the rotations minus 1, at the corners of the loops."""
 
 FOLLOWING_TOLERANCE = 1e-3
-"""Of the prediction on the way around a loop."""
+"""Tolerance of the predictor along a loop."""
 
 SAME, RESIDUAL = 1e-7, 1e-9
-"""Solutions that agree to this share are one; residual of a solution at most."""
+"""Relative tolerance within which two solutions are identical, and maximum residual of a solution."""
 
 QUIET_LOOPS, MOST_LOOPS = 2, 60
-"""Loops without a new solution before the search ends, and loops at most."""
+"""Number of consecutive loops without a new solution after which the search ends, and maximum number of loops."""
 
 THREADS = 2
 
 
 def nine_pair_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """A sixbar that was drawn and turns that it meets: y, shape (8,), and p, shape (16,)."""
+    """Return a random sixbar y, shape (8,), and parameters p, shape (16,), that it satisfies: rotations minus 1."""
 
     def drawn(count: int) -> Complex:
         return np.asarray(rng.normal(size=(count, 2)) @ np.array([1.0, 1.0j]))
@@ -54,7 +56,8 @@ def nine_pair_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
     a, a_bar, c, c_bar, d, d_bar, e, e_bar = y
     p[:8] = drawn(8)
     for j, u in enumerate(1.0 + p[:8]):
-        # |1 + c q − a u|² and then |1 + e w − d q|² are as in the first place, where q and w are 1.
+        # The distances |1 + c q − a u|² and |1 + e w − d q|² keep their values in the first position, where u, q and w
+        # are 1. The first condition gives q for the input rotation u, the second gives w for q.
         at_first = a + a_bar - c - c_bar + c * a_bar + c_bar * a
         turns = [c * (1.0 - a_bar / u), at_first - a * u - a_bar / u, c_bar * (1.0 - a * u)]
         q = np.roots(turns)[rng.integers(2)]
@@ -65,12 +68,17 @@ def nine_pair_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
 
 def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """All solutions of a random problem of nine pairs, shape (26 370, 8), and its turns.
+    """Find all 26,370 solutions of a random nine-pair problem.
+
+    Returns
+    -------
+    tuple
+        The solutions, shape (26370, 8), and the parameters that they share: the rotations minus 1.
 
     Raises
     ------
     RuntimeError
-        When the loops do not come to as many; another seed will do.
+        If the loops do not find all solutions. Try another seed.
     """
     y, p = nine_pair_problem(rng)
     straight, across = (
@@ -110,7 +118,7 @@ def solve_nine_pairs(rng: np.random.Generator) -> tuple[Complex, Complex]:
 
 
 def main() -> None:
-    """Make the start anew and store it."""
+    """Recompute the start points and store them."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--seed", type=int, default=SEED, help="another one than that of the stored file")
     parser.add_argument("--output", type=Path, help="left out: in place of the stored file")

@@ -26,7 +26,7 @@ class BarrelCam:
     program : Program
         Displacement along the axis.
     radius : float
-        Radius of the cylinder on which the roller's middle runs.
+        Radius of the cylinder on which the middle of the roller runs.
     roller_radius : float
         Half the groove's width; 0 for a thin pin.
     """

@@ -4,10 +4,10 @@ The second roller is fixed to the first, on the other side of the cam: on the sa
 arm at a fixed angle γ from the first. When the first roller is at s, the second is at s₂ = s_max − s with respect to
 its own cam:
 
-    D = d + d₂ + s_max        on a slide: its cam is that of an offset −e, turned by half a turn on the shaft
-    γ = ψ₀ + ψ₀₂ + s_max      on arms: that of a follower of the other sense, with the same pivot
+    D = d + d₂ + s_max        on a slide: its cam has the offset −e and is rotated by half a turn on the shaft
+    γ = ψ₀ + ψ₀₂ + s_max      on arms: its cam is that of a follower of the opposite sense with the same pivot
 
-(Norton, *Design of Machinery*, §8.1, §8.7; d, ψ₀ of :mod:`kinematics.cam.follower`).
+(Norton, *Design of Machinery*, §8.1, §8.7). :mod:`kinematics.cam.follower` defines d and ψ₀.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kinematics.cam.motion.segments import Segment
 
 
 def reverse_program(program: Program) -> Program:
-    """Return the program of the second roller: s_max − s, which is 0 where the first is highest."""
+    """Return the program of the second roller: s_max − s, which is 0 where the first roller is highest."""
     top = program.peaks[0].greatest
     return Program([Segment(one.name, one.pieces.scale_to(one.angle, -1.0, top)) for one in program.segments])
 

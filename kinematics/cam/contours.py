@@ -53,9 +53,9 @@ class SpecifiedContour:
     Parameters
     ----------
     base_radius : float
-        Radius of the base circle, from which displacements count.
+        Radius of the base circle, from which displacements are measured.
     parts : tuple of Arc or Flank
-        Counter-clockwise around the cam; the outward normal of each at its start is that of the one before at its end.
+        Parts in counter-clockwise order; the outward normal at the start of each equals that at its predecessor's end.
     """
 
     base_radius: float
@@ -115,7 +115,8 @@ class SpecifiedContour:
         Raises
         ------
         DimensionError
-            For a prime or base radius of another contour, or a roller too large, or a face, for a hollow.
+            If the follower's prime or base radius does not match the contour, the roller is too large for a hollow, or
+            a flat face follows a contour with a hollow.
         """
         own = follower.base_radius if isinstance(follower, TranslatingFlat) else follower.prime_radius
         roller = 0.0 if isinstance(follower, TranslatingFlat) else follower.roller_radius
@@ -136,7 +137,7 @@ class SpecifiedContour:
     def _find_starts(
         self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation
     ) -> tuple[Real, tuple[Arc | Flank, ...]]:
-        """Return the cam angles at which the follower reaches each part, and the parts, for a clockwise cam."""
+        """Return the cam angles at which the follower reaches each part, and those parts, for a clockwise cam."""
         contour = self if rotation == "cw" else self._mirror()
         normals = np.array([part.start for part in contour.parts])
         if isinstance(follower, TranslatingFlat):
@@ -153,6 +154,7 @@ class SpecifiedContour:
         return np.angle(centre) - np.arcsin(follower.offset / np.abs(centre)), contour.parts
 
     def _mirror(self) -> SpecifiedContour:
+        """Return the contour mirrored in the real axis, again counter-clockwise."""
         parts: list[Arc | Flank] = []
         for k in range(len(self.parts) - 1, -1, -1):
             part = self.parts[k]
@@ -163,7 +165,7 @@ class SpecifiedContour:
         return SpecifiedContour(self.base_radius, tuple(parts))
 
     def _compute_turn(self, k: int) -> float:
-        """Return the angle by which the normal turns on a part: negative on a hollow, 2π on a single arc."""
+        """Compute the angle by which the normal turns along a part: negative in a hollow, 2π on a single arc."""
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
             return 0.0
@@ -173,7 +175,10 @@ class SpecifiedContour:
         return turn or TURN
 
     def _find_end(self, k: int) -> complex:
-        """Return the end of a part: of an arc where its normal is the next part's, of a flank the next arc's start."""
+        """Return the end of a part.
+
+        An arc ends where its normal equals that of the next part, and a flank where the next arc starts.
+        """
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
             if isinstance(following, Flank):
@@ -182,6 +187,7 @@ class SpecifiedContour:
         return complex(part.centre + part.radius * np.exp(1j * following.start))
 
     def _compute_length(self, k: int) -> float:
+        """Compute the arc length of a part."""
         part = self.parts[k]
         if isinstance(part, Arc):
             return part.radius * self._compute_turn(k)
@@ -214,7 +220,7 @@ def build_tangent_cam(base_radius: float, nose_radius: float, nose_distance: flo
 def build_circular_arc_cam(
     base_radius: float, nose_radius: float, nose_distance: float, flank_radius: float
 ) -> SpecifiedContour:
-    """Build a cam whose flanks are arcs tangent to base circle and nose; a negative flank radius is hollow.
+    """Build a cam whose flanks are arcs tangent to base circle and nose; a negative flank radius makes them hollow.
 
     The flank's centre is at flank_radius − base_radius from the cam's centre and flank_radius − nose_radius from the
     nose's.
@@ -273,7 +279,7 @@ def _check_nose(base_radius: float, nose_radius: float, nose_distance: float) ->
 def _evaluate_part(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:
     """Evaluate s, v, a, j on one part; dγ/dθ = dβ/dθ = −1."""
     if isinstance(part, Flank):
-        # Under a flat face a flank is passed in an instant, and no angle comes here.
+        # A flat face passes a flank in an instant, so no cam angle belongs to a flank.
         assert isinstance(follower, TranslatingRoller), "a flat face stays on no flank"
         beta, h, e = part.start - theta, part.distance + follower.roller_radius, follower.offset
         sec, tan = 1.0 / np.cos(beta), np.tan(beta)

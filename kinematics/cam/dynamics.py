@@ -4,10 +4,10 @@ The follower is a mass that the cam moves through its program (Norton, *Design o
 
     F(θ) = m ω² a + c ω v + k s + F0,        T(θ) = F v,
 
-F along the follower's motion and positive from the cam to the follower; s, v, a are of the program, per radian. With a
+with F along the follower's motion, positive from the cam to the follower, and the program's s, v, a per radian. With a
 moment of inertia, a torsional spring and a torque preload the same holds for an oscillating follower. Contact holds
-where F > 0. A groove or a yoke closes the joint by form: k = F0 = 0, and F changes sides where it changes sign. Units
-are any consistent set.
+where F > 0. A groove or a yoke makes the joint form-closed: k = F0 = 0, and the follower changes walls where F changes
+sign. Any consistent set of units may be used.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ MIN_ANGLE_GAP = 1e-13
 """Radians below which two breaks are merged: a closer pair differs only by rounding."""
 
 COINCIDENCE_TOLERANCE = 1e-10
-"""Radians within which joints of several cams coincide: they come from angles in degrees with phases added."""
+"""Radians within which joints of several cams coincide: their angles are converted from degrees and added to phases."""
 
 
 MIN_PRESSING_FORCE = 1e-6
-"""Share of the maximum force above which the follower is pressed to a wall. Motions from a convex program have smaller
-forces where the true one is zero, and no play would show them."""
+"""Share of the maximum force above which the follower is pressed to a wall. Motions found by convex optimization have
+smaller spurious forces where the true force is zero, which are too weak to take up any play."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,12 @@ class FollowerLoad:
     Parameters
     ----------
     mass : float
-        Of the follower and all that moves with it, reduced to it; a moment of inertia for an oscillating one.
+        Mass of the follower and of everything that moves with it, reduced to the follower; for an oscillating
+        follower a moment of inertia.
     spring_rate : float
-        Of the spring that closes the joint; 0 where it is closed by form.
+        Rate of the return spring; 0 for a form-closed joint.
     preload : float
-        Force of spring and constant load at s = 0, toward the cam.
+        Force of the spring and of constant loads at s = 0, toward the cam.
     damping : float
         Coefficient c of viscous friction.
     """
@@ -88,7 +89,7 @@ class FollowerLoad:
         return np.asarray(np.where(curving > 0.0, np.clip(vertex, 0.0, top_speed), end))
 
     def force(self, motion: Motion, speed: ArrayLike) -> Real:
-        """Return F at a program's s, v, a and at one speed, or at a speed for each."""
+        """Return F at a program's s, v, a; ``speed`` is one speed for all points, or one for each."""
         w = np.asarray(speed, dtype=np.float64)
         inertia = self.mass * w**2 * motion.a
         return np.asarray(inertia + self.damping * w * motion.v + self.spring_rate * motion.s + self.preload)
@@ -161,14 +162,14 @@ class RunningCam:
         return np.asarray(np.mod(pieces[:-1][pressed[changed]], TURN))
 
     def compute_min_preload(self, floor: float = 0.0) -> float:
-        """Compute the smallest preload, at least 0, that keeps F at or above a floor; the rest is unchanged."""
+        """Compute the smallest preload, at least 0, that keeps F at or above a floor; all other loads are unchanged."""
         return max(0.0, floor + self.load.preload - self.force_extremes.least)
 
     def find_weakest_contact(self, top_speed: float) -> WeakestContact:
         """Find the minimum F over all cam angles and all speeds from 0 to a top speed; the running speed is irrelevant.
 
-        At one angle F is a parabola in the speed: minimal at its vertex if a > 0 and the vertex lies in the range, else
-        at an end.
+        At one angle F is a parabola in the speed. It is minimal at its vertex if a > 0 and the vertex lies in the
+        range, otherwise at an end of the range.
         """
         load, motion = self.load, self.program.motion
         c, m = load.damping, load.mass
@@ -282,7 +283,7 @@ class Camshaft:
 
     @cached_property
     def energy_fluctuation(self) -> float:
-        """Largest swing of the energy exchanged with the shaft about its mean, over a turn.
+        """Largest fluctuation over a turn of the energy exchanged with the shaft, about its mean.
 
         The energy ∫(T − T̄) dθ has its extremes where the torque crosses its mean (Norton §11.11).
         """

@@ -3,8 +3,8 @@
 The cam turns about the origin; its angle θ counts in its sense of rotation. Here it turns clockwise, so that in the
 cam's own frame the follower walks around it counter-clockwise; :mod:`profile` mirrors this for the other sense. At θ =
 0 the cam's frame is the ground's. A translating follower moves along the +x axis of the ground; the pivot of an
-oscillating one lies on that axis. Displacements s are of the trace point (a length) or of the arm (radians), from the
-position where a roller's centre is on the prime circle, or a flat face touches the base circle.
+oscillating one lies on that axis. The displacement s is that of the trace point (a length) or of the arm (radians),
+measured from the position in which the roller's centre is on the prime circle or the flat face touches the base circle.
 
 With p(θ) the roller's centre in the ground's frame, the pitch curve is z = e^{iθ} p, and
 
@@ -48,7 +48,7 @@ class TranslatingRoller:
     prime_radius : float
         Radius of the prime circle, on which the roller's centre lies at s = 0.
     roller_radius : float
-        0 for a knife edge.
+        Radius of the roller; 0 for a knife edge.
     offset : float
         Distance of the slide from the cam's centre; positive to the side that lowers the pressure angle of the rise,
         tan φ = (v − offset)/(d + s) with d² = prime_radius² − offset².
@@ -91,7 +91,7 @@ class TranslatingRoller:
         return np.asarray(np.arctan2(motion.v - self.offset, self.height + motion.s))
 
     def pitch_curvature(self, motion: Motion) -> Real:
-        """Of the pitch curve, positive where convex."""
+        """Return the curvature of the pitch curve, positive where convex."""
         return _compute_curvature(self.trace(motion))
 
 
@@ -160,7 +160,7 @@ class OscillatingRoller:
         return np.asarray(-np.angle(normal * np.conj(trace.direction)))
 
     def pitch_curvature(self, motion: Motion) -> Real:
-        """Of the pitch curve, positive where convex."""
+        """Return the curvature of the pitch curve, positive where convex."""
         return _compute_curvature(self.trace(motion))
 
 
@@ -183,7 +183,7 @@ class TranslatingFlat:
     Parameters
     ----------
     base_radius : float
-        Of the circle that the face touches at s = 0.
+        Radius of the base circle, which the face touches at s = 0.
     offset : float
         Distance of the slide's axis from the cam's centre; positive to the side on which a rise touches the face.
     """
@@ -218,13 +218,13 @@ class OscillatingFlat:
     Parameters
     ----------
     base_radius : float
-        Of the circle that the face touches at s = 0.
+        Radius of the base circle, which the face touches at s = 0.
     pivot_distance : float
-        From the cam's centre to the pivot.
+        Distance from the cam's centre to the pivot.
     face_offset : float
         Distance of the face from the pivot, positive toward the cam.
     sense : {1, -1}
-        As for the oscillating roller.
+        As for :class:`OscillatingRoller`.
     """
 
     base_radius: float
@@ -276,6 +276,7 @@ Follower = Roller | Flat
 
 
 def _compute_curvature(trace: Trace) -> Real:
+    """Compute the curvature of the pitch curve, positive where convex."""
     # Derivatives in the cam's frame, rotated back to the ground's.
     tangent = trace.p1 + 1j * trace.p
     bend = trace.p2 + 2j * trace.p1 - trace.p

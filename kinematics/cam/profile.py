@@ -156,7 +156,7 @@ def space_angles(count: int) -> Real:
 
 
 def _invert(values: Real) -> Real:
-    """Return 1/x, infinity for zero."""
+    """Return 1/x; infinity for zero."""
     infinite: Real = np.full(values.shape, np.inf)
     np.divide(1.0, values, out=infinite, where=values != 0.0)
     return infinite

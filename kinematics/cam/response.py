@@ -38,7 +38,7 @@ RESONANCE_TOLERANCE = 1e-9
 """Smallest singular value of 1 − (transfer matrix of a turn) below which no steady motion exists."""
 
 MIN_FREQUENCY_RATIO = 10.0
-"""Ratio of natural frequency to speed below which the program's harmonics excite the train markedly (Norton §15.3)."""
+"""Ratio of natural frequency to speed below which the program's harmonics excite the train strongly (Norton §15.3)."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,11 @@ class FollowerTrain:
     Parameters
     ----------
     mass, stiffness : float
-        Reduced to the follower; stiffness of the train between cam and mass.
+        Mass reduced to the follower, and stiffness of the train between cam and mass.
     damping : float
         Damping coefficient c of the train.
     spring_rate, preload : float
-        Return spring on the mass; 0 for a form-closed joint.
+        Rate and preload of the return spring on the mass; 0 for a form-closed joint.
     """
 
     mass: float

@@ -49,8 +49,8 @@ class SpringConstraints:
     floor : float
         Minimum contact force.
     speed, top_speed : float
-        Speeds of the camshaft, radians per unit of time, at which the maximum force counts and up to which contact is
-        kept.
+        Camshaft speeds, radians per unit of time. The maximum force is minimized at ``speed``, and contact is kept at
+        all speeds up to ``top_speed``.
     least_rate, greatest_rate : float
         Range of the spring's rate; the maximum may be infinite.
     preload : float or None
@@ -92,7 +92,7 @@ class Spring:
 
 
 def find_best_spring(program: Program, mass: float, damping_ratio: float, demands: SpringConstraints) -> Spring:
-    """Find the feasible spring of smallest maximum contact force, or the one that violates the constraints least.
+    """Find the feasible spring of smallest maximum contact force, or the one with the smallest violation.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def find_best_spring(program: Program, mass: float, damping_ratio: float, demand
         Mass of the follower, or its moment of inertia.
     damping_ratio : float
         Damping ratio ζ of mass and spring.
-    demands : SpringDemands
+    demands : SpringConstraints
     """
     search = _SpringSearch(program, mass, damping_ratio, demands)
     found = search.minimize_force()
@@ -109,7 +109,7 @@ def find_best_spring(program: Program, mass: float, damping_ratio: float, demand
 
 
 class _SpringSearch:
-    """State of the exchange: the current cuts."""
+    """State of the exchange algorithm: the current cuts."""
 
     def __init__(self, program: Program, mass: float, ratio: float, demands: SpringConstraints) -> None:
         self.program, self.mass, self.ratio, self.demands = program, mass, ratio, demands
@@ -183,7 +183,7 @@ class _SpringSearch:
         return Spring(best.rate, best.preload, best.greatest_force, min(bound, best.greatest_force))
 
     def find_nearest_miss(self) -> Spring:
-        """Find the spring whose required preload exceeds the given one least."""
+        """Find the spring whose required preload exceeds the given one by the smallest amount."""
         stated = self.demands.preload
         assert stated is not None, "a free preload meets every need"
         best: tuple[float, float, float] | None = None

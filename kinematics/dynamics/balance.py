@@ -5,7 +5,7 @@ With ' the derivative by the input q, and kinetic energy ½ J q̇²,
     J = Σ m |r'|² + Σ I φ'²,    drive = J q̈ + ½ J' q̇² − (work of weight, loads and springs per unit of q),
 
 which is virtual work (Norton 10.26, 11.16) with d'Alembert's forces taken from the kinetic energy. Momentum P q̇ and
-angular momentum H q̇ about a fixed point give what acts on the frame:
+angular momentum H q̇ about a fixed point give the force and the moment on the frame:
 
     shaking force = Σ external forces − (P q̈ + P' q̇²),    P = Σ m r',
     shaking moment = Σ external moments − (H q̈ + H' q̇²),  H = Σ m (r − c) × r' + Σ I φ'.

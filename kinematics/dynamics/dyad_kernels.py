@@ -1,16 +1,16 @@
-"""Kinematics and reactions of a linkage built of dyads, closure by closure and back again: compiled.
+"""Compiled kinematics and reactions of linkages built of dyads, closure by closure and back again.
 
-Forwards each closure gives its links' rotations and two rates. With the arms p, q from the pins to the joint where two
-links meet, velocities and accelerations v, a of the pins, and X = p × q,
+In the forward pass each closure gives the rotations of its links and their first two rates. With the arms p, q from the
+pins to the joint where two links meet, velocities and accelerations v, a of the pins, and X = p × q,
 
     RRR   ω₁ = (v_q − v_p)·q / X,     ω₂ = (v_q − v_p)·p / X,
           α₁ = g·q / X,               α₂ = g·p / X,       g = a_q − a_p + ω₁² p − ω₂² q;
 
-where a joint slides on a line with the normal n, in another link (RRP) or in its own (RPR), p × n takes the part of X.
+where a joint slides on a line with the normal n, in another link (RRP) or in its own (RPR), p × n takes the place of X.
 
-Backwards, the last closure first, each link requires the resultant N of its pins' forces and their moment K about its
-pin (Norton, *Design of Machinery*, eq. 11.1). The force f that later links, masses and loads exert on a pin is known
-then:
+In the backward pass, the last closure first, each link requires the resultant N of its pins' forces and their moment K
+about its pin (Norton, *Design of Machinery*, eq. 11.1). The force f that later links, masses and loads exert on a pin
+is known by then:
 
     RRR   force of the joint on the second link  (K₂ p + (K₁ − p × f) q) / (q × p),
     RRP   normal force  λ = (K − p × f) / (p × n),
@@ -40,7 +40,7 @@ ON_LINK, ON_JOINT = range(2)
 """Codes for the target of a load."""
 
 DRIVE, PIN_FORCE, SHAKING_X, SHAKING_Y, MOMENT = range(5)
-"""Rows of the results."""
+"""Rows of the results: drive, largest pin force, components of the shaking force, and shaking moment."""
 
 MAX_LANES = 64
 """Maximum number of inputs processed side by side by vector instructions; their data must fit into the first-level
@@ -87,17 +87,17 @@ def eliminate(
     bases : int, shape (links,)
         The pin of each link, about which its moments are taken.
     exact : bool, shape (links,)
-        Links whose rotation is known beyond a full turn: the input, and what gears tie to it.
+        Links whose rotation is known beyond a full turn: the input, and the links geared to it.
     carried : int, shape (links, 1 + joints)
         Number of joints that a link determines, and their indices.
     joints : complex, shape (D, joints)
-        In the reference.
+        Positions in the reference configuration.
     lines, normals : complex, shape (D, slides)
         A point of each slide's line, relative to the pin of its link, and its normal; in the reference.
     signs : int, shape (steps, D)
-        Assemblies.
+        Assembly signs of the closures.
     mass, cg, inertia : shape (D, links)
-        Centres of gravity from the link's pin, in the reference.
+        Bodies of the links; centres of gravity are relative to the link's pin, in the reference.
     pin_mass : float, shape (D, joints)
     gravity : complex
     on : int, shape (loads, 3)
@@ -121,7 +121,7 @@ def eliminate(
     # The ground has rotation factor 1 and no rates.
     turn[0, 0] = 1.0
     gx, gy = gravity.real, gravity.imag
-    # Blocks of equal size, at most LANES: two ceiling divisions.
+    # Blocks of equal size, at most MAX_LANES: two ceiling divisions.
     block = -(-inputs // -(-inputs // MAX_LANES)) if inputs else 1
     for d in range(joints.shape[0]):
         place = joints[d]

@@ -51,8 +51,10 @@ class _Numbering(NamedTuple):
 
 
 def is_built_of_dyads(machine: Machine) -> bool:
-    """Return whether :func:`compute_dyad_forces` handles a machine: dyads only, no link on two known pins, springs or
-    friction."""
+    """Return whether :func:`compute_dyad_forces` handles a machine.
+
+    The machine must close by dyads alone, without a link on two known pins, springs or friction.
+    """
     mechanism = machine.mechanism
     if mechanism.redundant or machine.friction.pins or machine.friction.slides:
         return False
@@ -65,6 +67,7 @@ def is_built_of_dyads(machine: Machine) -> bool:
 
 @lru_cache(maxsize=CACHE_SIZE)
 def _build_numbering(mechanism: Mechanism) -> _Numbering:
+    """Build the numbering of links and joints, and find the pin about which each link's moments are taken."""
     program = build_program(mechanism)
     rows, driver = program.code.rows, program.code.driver
     joints = tuple(mechanism.joints)
@@ -161,8 +164,10 @@ class _Loads(NamedTuple):
 
 
 class _KernelInput:
-    """A machine's designs in rows, in the unit of the forces' lengths, relative to the first joint: a far origin would
-    cost digits."""
+    """A machine's designs in rows, in the length unit of the forces.
+
+    Points are relative to the first joint, since a distant origin would cost digits.
+    """
 
     def __init__(self, machine: Machine, make: _Numbering) -> None:
         self.machine, self.make = machine, make

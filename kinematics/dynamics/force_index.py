@@ -15,7 +15,7 @@ from kinematics.dynamics.reactions import compute_reactions
 
 
 def compute_joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
-    """Compute the largest force of a pin or slide over the load, without masses, springs and friction; shape S + (N,).
+    """Compute the largest pin or slide force over the load, without masses, springs and friction; shape S + (N,).
 
     For a torque the index has the unit 1/length. It is NaN where the load vanishes or the reactions are not
     determined: at a dead centre the index is infinite.

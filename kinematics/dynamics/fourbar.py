@@ -141,8 +141,7 @@ def fill_peaks(
     positions: int,
     out: Real,
 ) -> None:
-    """Fill the peaks of :func:`compute_peaks` by windows of equal numbers of positions: ``out`` has shape (n, windows,
-    5).
+    """Fill the peaks of :func:`compute_peaks` by windows of equal numbers of positions into ``out`` (n, windows, 5).
 
     One long loop, since function calls here would cost as much as the work inside them.
     """
@@ -259,6 +258,6 @@ def fill_peaks(
 
 @njit(**OPTIONS)
 def _write_peaks(out: Real, drive: float, pin: float, shaking: float, moment: float, speed: float) -> None:
-    """Write the peaks; those of pins and frame are passed as squares."""
+    """Write the peaks; those of the pin force and the shaking force are passed as squares."""
     out[DRIVE], out[JOINT], out[SHAKING_FORCE] = drive, math.sqrt(pin), math.sqrt(shaking)
     out[SHAKING_MOMENT], out[POWER] = moment, drive * abs(speed)

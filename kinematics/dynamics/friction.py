@@ -34,9 +34,9 @@ class Friction:
 
 
 class Contact(NamedTuple):
-    """A contact with friction: a link on ``against`` at a joint (a moment), or with ``slide`` ≥ 0 the pin along its
-    line.
+    """A contact with friction: a moment between ``link`` and ``against`` at a joint, or a force along a slide.
 
+    With ``slide`` ≥ 0 the friction acts on the pin along the line of that slide.
     Friction is ``lever`` times the norm of the unknowns in ``columns`` (−1: none).
     """
 
@@ -123,7 +123,10 @@ def compute_factors(contact: Contact, places: Places, size: Real) -> Real:
 def build_wrenches(
     contacts: tuple[Contact, ...], mechanism: Mechanism, system: System, tangent: int
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Build the contacts' terms, one column each, in the form of :mod:`system`; ``tangent``: direction of slide 0."""
+    """Build the contacts' terms, one column each, in the form of :mod:`system`.
+
+    ``tangent`` is the index of the direction of slide 0.
+    """
     numbers = {link: n for n, link in enumerate(system.moving)}
     joints = {joint: n for n, joint in enumerate(mechanism.joints)}
     terms, coefficients = [], []

@@ -1,9 +1,10 @@
-"""Reactions with Coulomb friction at each position: compiled.
+"""Compiled reactions with Coulomb friction at each position.
 
 With A x = b the frictionless equations, y the friction of each contact and W their wrenches on the links,
-A x = b − W y, so that x = x₀ − V y with A V = W. Friction is y_e = c_e ‖x on the columns of contact e‖, where c_e has
-the coefficient and the sign against the motion: a fixed point of as many unknowns as there are contacts. It is found by
-iteration from the frictionless answer, and where that does not converge by Newton's method with halved steps.
+A x = b − W y, so that x = x₀ − V y with A V = W. Friction is y_e = c_e ‖x on the columns of contact e‖, where c_e is
+the lever of the friction with the sign that opposes the motion. This is a fixed-point problem with one unknown for each
+contact. It is solved by iteration from the frictionless solution and, where that does not converge, by Newton's method
+with halved steps.
 
 Where K_ef = |c_e| ‖V_f on the columns of e‖ has a spectral radius below 1 the iteration is a contraction and the
 solution is unique. Elsewhere Newton's method is also started far out in all directions. No solution, or a second one,
@@ -32,7 +33,7 @@ MAX_ITERATIONS = 200
 """Maximum number of steps of the fixed-point iteration, and of Newton's method."""
 
 CONVERGENCE_TOLERANCE = 1e-12
-"""Relative change of friction at which it has converged."""
+"""Relative change of friction below which the iteration has converged."""
 
 MAX_HALVINGS = 30
 """Maximum number of halvings of a Newton step."""
@@ -49,7 +50,7 @@ POWER_STEPS = 30
 
 @njit(**OPTIONS)
 def _subtract_frictions(free: Real, answers: Real, y: Real, solution: Real) -> None:
-    """Write the solution with friction: that without it, less the answers to the frictions y."""
+    """Write the solution with friction: the frictionless one minus the response to the frictions y."""
     for row in range(len(free)):
         total = free[row]
         for e in range(len(y)):
@@ -98,7 +99,7 @@ def solve_friction(
         frictions[:, at] = np.nan
         conditions[at] = np.inf
         jammed[at] = False
-        # No derivatives at a toggle, hence no inertia forces.
+        # Derivatives, and therefore inertia forces, do not exist at a toggle.
         if not smooth[at]:
             continue
         matrix[:] = 0.0

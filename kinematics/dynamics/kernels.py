@@ -1,8 +1,8 @@
-"""Assembly and solution of the equations of the reactions, position by position: compiled.
+"""Compiled assembly and solution of the equations of the reactions, position by position.
 
 Elimination with partial pivoting, and the condition number in the 1-norm by Hager's estimate of the norm of the inverse
 (N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, Sec. 15.2): a handful of further solutions instead of
-the inverse itself. Lengths are shares of the mechanism's size, so that forces and torques are of one kind.
+the inverse itself. Lengths are shares of the mechanism's size, so that forces and torques have the same unit.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def solve_positions(
     terms, coefficients, bases
         The system of equations (:mod:`system`).
     joints : complex, shape (joints, M)
-        Joints over the mechanism's size.
+        Positions of the joints, divided by the mechanism's size.
     directions : complex, shape (directions, M)
         Unit vectors along which terms act.
     known : float, shape (M, n)
@@ -124,7 +124,7 @@ def compute_norm(matrix: Real) -> float:
 
 @njit(**OPTIONS)
 def factorise(matrix: Real, order: Integers) -> bool:
-    """Eliminate in place with partial pivoting; False where a pivot vanishes."""
+    """Eliminate in place with partial pivoting; return False if a pivot vanishes."""
     n = len(matrix)
     for k in range(n):
         pivot = k

@@ -1,7 +1,7 @@
 """Loads: forces at points of links and at joints, and torques on links, constant or over the input.
 
-A load is described twice, so that both methods stay independent: by the efforts on links and joints, for the reactions,
-and by its work per unit of the input's motion, for the balance of power.
+A load is described in two ways, so that both methods stay independent: by its forces and couples on links and joints,
+for the reactions, and by its work per unit of the input's motion, for the balance of power.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Load(Protocol):
 
 @dataclass(frozen=True)
 class PointForce:
-    """A force at a point of a link (given in the reference); if ``turning``, its components turn with the link."""
+    """A force at a point of a link, given in the reference; if ``turning``, its components turn with the link."""
 
     link: str
     place: Complex
@@ -142,7 +142,8 @@ class Resistance:
 
 @dataclass(frozen=True)
 class TurningResistance:
-    """A torque on a link against its rotation: ``forward`` where it turns counter-clockwise; zero at rest."""
+    """A torque on a link against its rotation: ``forward`` where it turns counter-clockwise, ``backward`` where it
+    turns clockwise, and zero at rest."""
 
     link: str
     forward: float

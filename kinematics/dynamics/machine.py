@@ -18,7 +18,7 @@ class Machine:
     Attributes
     ----------
     mechanism : Mechanism
-        Designs of shape S, in their own length unit, which is ``scale`` units of everything else.
+        Designs of shape S, in their own length unit, which is ``scale`` of the length units of all other data.
     bodies : dict of str to Body
         Bodies by moving link, points in the reference configuration; a link without an entry has no mass.
     pin_masses : dict of str to float, shape S
@@ -31,6 +31,8 @@ class Machine:
         Friction of pins and slides.
     about : complex, or of shape S
         Point about which the shaking moment is taken.
+    scale : float
+        Length unit of the mechanism, in the length unit of all other data.
     """
 
     mechanism: Mechanism

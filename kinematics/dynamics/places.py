@@ -28,7 +28,7 @@ class Places:
     motion : MechanismMotion
         Its motion with two derivatives or more; arrays of shape S + (N,).
     scale : float
-        The unit of the mechanism's lengths in that of the results.
+        The length unit of the mechanism, expressed in that of the results.
     """
 
     def __init__(self, mechanism: Mechanism, motion: MechanismMotion, scale: float = 1.0) -> None:
@@ -77,7 +77,7 @@ class Places:
 
     @cached_property
     def turns(self) -> dict[str, Complex]:
-        """e^{iφ} of every link, and two derivatives."""
+        """Rotation factors e^{iφ} of the links, and their first two derivatives."""
         turns: dict[str, Complex] = {}
         for link, (angle, speed, acceleration) in self.spins.items():
             unit = np.exp(1j * angle)
@@ -95,13 +95,13 @@ class Places:
         return np.asarray(self.joints[base] + (place - self.reference(base))[..., None] * self.turns[link])
 
     def direction(self, slide: int) -> Complex:
-        """Return the direction of a slide's line, and two derivatives."""
+        """Return the direction of a slide's line, and its first two derivatives."""
         line = self.mechanism.slides[slide]
         return np.asarray(np.exp(1j * line.angle)[..., None] * self.turns[line.link])
 
 
 def cross(arm: Complex, force: Complex) -> Real:
-    """Return the moment of a force on an arm."""
+    """Return the moment of a force about the start of its arm."""
     return np.asarray(arm.real * force.imag - arm.imag * force.real)
 
 

@@ -39,7 +39,7 @@ class Reactions:
     solved : bool
         Where the equations determine all reactions.
     determined : bool
-        Where the loads are finite: a spring whose ends meet has no direction. Elsewhere nothing is solved.
+        Where the loads are finite; a spring whose ends meet has no direction. Only these positions are solved.
     condition : float
         Condition number of the equations.
     drive : float
@@ -53,7 +53,7 @@ class Reactions:
     rubbing : Rubbing
         Friction of each contact.
     jammed : bool
-        Where friction leaves no solution, or several.
+        Where friction permits no solution, or several.
     indeterminate : bool
         Where some joint forces are not unique because constraints are redundant; drive and shaking force still are.
     shaking_force, shaking_moment
@@ -75,7 +75,7 @@ class Reactions:
 
 
 def collect_efforts(machine: Machine, now: Places) -> list[Effort]:
-    """Collect loads, weight and inertia of point masses (d'Alembert's force on the pin)."""
+    """Collect the loads, and the weight and inertia of point masses (d'Alembert's force on the pin)."""
     efforts = [effort for load in machine.loads for effort in load.efforts(now)]
     none = np.zeros(())
     for joint, mass in machine.pin_masses.items():
@@ -291,6 +291,7 @@ def _assemble_reactions(
     outcome: _Solution,
     size: Real,
 ) -> Reactions:
+    """Assemble the forces at all joints, slides and gears from the unknowns of the solution; NaN where unsolved."""
     mechanism, unknowns = machine.mechanism, outcome.unknowns
     solved = (outcome.condition < MAX_CONDITION) & ~outcome.jammed
     slides = tuple(unknowns[system.slides_at : system.slides_at + len(mechanism.slides)])

@@ -1,4 +1,4 @@
-"""Reactions with redundant constraints: the forces that the equations determine, and the smallest that satisfy them.
+"""Reactions with redundant constraints: the uniquely determined forces, and the solution of minimum norm.
 
 The matrix of the equations, links × unknowns, is the transpose of the constraints' Jacobian. With more constraints than
 necessary it has more columns than rows: any *self-stress*, a vector that it maps to zero, may be added to a solution.
@@ -33,7 +33,7 @@ def solve_minimum_norm(
     solutions: Real,
     conditions: Real,
 ) -> list[Real]:
-    """Fill in the solutions of minimum sum of squares; parameters as for :func:`kernels.solve_positions`.
+    """Fill in the solutions of minimum norm; the parameters are those of :func:`kernels.solve_positions`.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def solve_minimum_norm(
     sound = values[:, -1] > MIN_SINGULAR_VALUE * values[:, 0]
     at, left, values, right = at[sound], left[sound], values[sound], right[sound]
     conditions[at] = values[:, 0] / values[:, -1]
-    # The pseudoinverse by the SVD gives the solution without self-stress, hence of minimum norm.
+    # The pseudoinverse by the SVD gives the solution without self-stress, which is that of minimum norm.
     parts = np.einsum("mji,mj->mi", left, known[at]) / values
     solutions[at] = np.einsum("mij,mi->mj", right[:, :rows], parts)
     for n, stress in enumerate(stresses):

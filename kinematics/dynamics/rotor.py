@@ -30,7 +30,7 @@ def compute_plane_corrections(moments: Complex, z: Real, planes: Real) -> Comple
     Returns
     -------
     complex, shape (1,) or (2,)
-        Moments by plane. A single plane balances the force only.
+        Correcting moments by plane. A single plane balances the force only.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def compute_influence_coefficients(initial: Complex, runs: Complex, trials: Comp
     Parameters
     ----------
     initial : complex, shape (sensors,)
-        Readings of the rotor as it is: amplitude and phase.
+        Readings of the uncorrected rotor: amplitude and phase.
     runs : complex, shape (planes, sensors)
         Readings with a trial weight in each plane in turn.
     trials : complex, shape (planes,)

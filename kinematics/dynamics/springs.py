@@ -22,7 +22,7 @@ MIN_LENGTH = 1e-12
 """Length of a spring, as a share of the mechanism's size, below which rounding determines its direction."""
 
 STEPS_PER_TURN = 720
-"""Positions per turn at which a rotation is followed: between two of them no link turns by π, except at a toggle."""
+"""Positions per turn at which a rotation is followed: between neighbours no link turns by π, except at a toggle."""
 
 TURN = 2.0 * np.pi
 
@@ -49,6 +49,7 @@ class Spring:
         return np.asarray(second[0] - first[0]), np.asarray(second[1] - first[1])
 
     def _compute_tension(self, length: Real, lengthening: Real) -> Real:
+        """Compute the tension from the length and its rate."""
         spring = self.rate * (length - self.free_length) + self.preload
         total = spring + self.damping * lengthening
         if self.one_sided == "pull":
@@ -89,7 +90,7 @@ class Spring:
 
 @dataclass(frozen=True)
 class TorsionSpring:
-    """A torsion spring and damper between two links: −``rate`` (rotation − ``free``) − ``damping`` × its rate.
+    """A torsion spring and damper between two links: torque −``rate`` (rotation − ``free``) − ``damping`` × its rate.
 
     The rotation is that of the second link relative to the first, from the reference, radians; the torque acts on the
     second link, its opposite on the first. ``near`` returns the rotation at an input to within half a turn, for

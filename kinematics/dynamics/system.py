@@ -27,11 +27,12 @@ class System:
     Attributes
     ----------
     moving : tuple of str
-        The links, three equations each.
+        The moving links, with three equations each.
     hubs : dict of str to str
         The hub of each joint.
     pins : tuple of (joint, link)
-        Two columns each, in this order, then one by slide, one by gear pair, and the drive.
+        Pins with their links: two columns for each, in this order, then one for each slide, one for each gear pair,
+        and one for the drive.
     terms : int, shape (T, 5)
         Kind, column, link (by number in ``moving``), joint, direction. See :mod:`kernels`.
     coefficients : float, shape (T,)

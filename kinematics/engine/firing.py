@@ -34,15 +34,18 @@ class Firing(NamedTuple):
 
 
 def compute_unevenness(angles: Real, cycle: float) -> Real:
-    """Compute the largest minus the smallest gap between firings, shape S, from angles S + (n,) in degrees of a
-    cycle."""
+    """Compute the largest minus the smallest gap between firings, shape S.
+
+    ``angles``, shape S + (n,), and ``cycle`` are in degrees.
+    """
     ordered = np.sort(np.mod(angles, cycle), axis=-1)
     gaps = np.diff(np.concatenate([ordered, ordered[..., :1] + cycle], axis=-1), axis=-1)
     return np.asarray(gaps.max(axis=-1) - gaps.min(axis=-1))
 
 
 def list_firing_choices(top: Real, strokes: int) -> Firing:
-    """List the most even choices for top dead centres τ (degrees, by cylinder) of an engine of 2 or 4 strokes."""
+    """List the most even choices of firing angles, given the top dead centres τ (degrees, by cylinder) of an engine of
+    2 or 4 strokes."""
     count = len(top)
     own = np.mod(top - top[0], 360.0)
     # An angle that rounding left just below a full turn is a full turn.

@@ -1,7 +1,7 @@
 """Harmonics of an engine's forces, moments and torque, as sums over its cylinders.
 
 Cylinder i has its axis at β_i and its top dead centre where the crank has turned by τ_i = φ_i + β_i. Its k-th harmonic
-pushes the frame by u(β_i) cos k(θ − τ_i), in units of m_B r ω² A_k. As a complex number the sum is
+exerts the force u(β_i) cos k(θ − τ_i) on the frame, in units of m_B r ω² A_k. As a complex number the sum is
 
     P e^(jkθ) + N e^(−jkθ),    P = ½ Σ w_i e^(j(β_i − kτ_i)),    N = ½ Σ w_i e^(j(β_i + kτ_i)):
 
@@ -52,5 +52,5 @@ def compute_turning_parts(order: int, axis: Real, top: Real, weight: Real | floa
 
 
 def sum_torque(order: int, top: Real, weight: Real | float = 1.0) -> Complex:
-    """Sum e^(−jkτ): the k-th harmonic of the torque, in units of one cylinder's."""
+    """Sum e^(−jkτ) over the cylinders: the k-th harmonic of the torque, in units of that of one cylinder."""
     return np.asarray((weight * np.exp(-1j * order * top)).sum(axis=-1))

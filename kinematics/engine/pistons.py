@@ -71,7 +71,11 @@ def compute_acceleration_harmonics(ratio: float, order: int, *, two_term: bool =
 
 
 class Motion(NamedTuple):
-    """A piston: its distance from the crankshaft, first and second derivative by the crank angle; tan φ of the rod."""
+    """Motion of a piston.
+
+    ``place`` is its distance from the crankshaft, ``slope`` and ``bend`` are the first and second derivatives by the
+    crank angle, and ``lean`` is tan φ of the rod.
+    """
 
     place: Real
     slope: Real
@@ -82,7 +86,7 @@ class Motion(NamedTuple):
 def compute_piston_motion(angle: Real, crank: float, rod: float, *, two_term: bool = False) -> Motion:
     """Compute the motion of a piston at crank angles after top dead centre, radians.
 
-    ``two_term`` gives Norton's eq. 13.3, and of tan φ eq. 13.7d.
+    ``two_term`` selects the approximations of Norton's eq. 13.3 and, for tan φ, eq. 13.7d.
     """
     # λ = r/l governs how far the rod's obliquity matters.
     sine, cosine, ratio = np.sin(angle), np.cos(angle), crank / rod

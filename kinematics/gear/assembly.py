@@ -154,12 +154,12 @@ def measure_gaps(
     turns : mapping
         Positions of the copies of each planet's set, in turns from the first.
     addendum : float
-        Tip circles lie this many modules beyond the pitch circles, also those of rings whose teeth are shorter.
+        Distance of the tip circles from the pitch circles, modules; also used for rings whose teeth are shorter.
 
     Returns
     -------
     list of Gap
-        The minimum for each pair of gear names; empty if no gears can touch.
+        The minimum clearance for each pair of gear names; empty if no gears can touch.
     """
     placed = place_pins(arrangement, teeth)
     assert placed is not None
@@ -203,8 +203,7 @@ def measure_gaps(
 def _measure_bevel_gaps(
     arrangement: Arrangement, teeth: Mapping[str, int], turns: Mapping[str, Sequence[Fraction]], addendum: float
 ) -> list[Gap]:
-    """Measure the clearance between bevel planets at their large ends, in the planes that bisect the angles between
-    pins.
+    """Measure the clearance between bevel planets at their large ends, in the planes midway between their pins.
 
     The pitch circle of a planet's large end lies at the side gear's pitch radius from the axis.
     """

@@ -97,7 +97,7 @@ class BevelPair:
 
     @property
     def cones(self) -> tuple[float, float]:
-        """Pitch cone angles of pinion and gear."""
+        """Pitch cone angles of pinion and gear, radians."""
         return compute_cone_angles(0.5 * math.pi, self.gear / self.pinion)
 
     @property
@@ -107,7 +107,7 @@ class BevelPair:
 
     @property
     def cone_distance(self) -> float:
-        """From the apex to the large end."""
+        """Distance from the apex to the large end."""
         return math.hypot(*self.pitch_radii)
 
     @property
@@ -185,7 +185,7 @@ class BevelCones:
 
     @property
     def cones(self) -> tuple[float, float]:
-        """Pitch cone angles of driver and driven gear."""
+        """Pitch cone angles of driver and driven gear, radians."""
         large, small = max(self.driver, self.driven), min(self.driver, self.driven)
         pinion, gear = compute_cone_angles(self.shaft_angle, large / small)
         # The cone angles are computed for the smaller gear first.
@@ -198,7 +198,7 @@ class BevelCones:
 
     @property
     def cone_distance(self) -> float:
-        """From the apex to the large end."""
+        """Distance from the apex to the large end."""
         return self.pitch_radii[0] / math.sin(self.cones[0])
 
     @property

@@ -22,7 +22,7 @@ from kinematics.gear.flanks import compute_corner_rounding
 from kinematics.gear.teeth import Gear, Mesh
 
 Freedom = Callable[[Complex, Real], Real]
-"""Depth of points of a blank inside a tool when the blank has turned by an angle; negative outside."""
+"""Depth of points of a blank inside a tool, as a function of the points and the blank's rotation; negative outside."""
 
 CORNER_POSITIONS = 121
 """Number of positions of a corner on its path through the mate."""
@@ -32,7 +32,7 @@ TOOL_POSITIONS, REFINED_POSITIONS, REFINEMENTS = 61, 13, 3
 
 
 def measure_tip_depth(mesh: Mesh, cutter_teeth: int) -> float:
-    """Measure how deep the deeper of the two tips digs into its mate; at most zero if both run free.
+    """Measure how deep the tips dig into their mates: the larger of two depths, at most zero if both run free.
 
     Parameters
     ----------
@@ -77,8 +77,7 @@ def _measure_depth(gear: Gear, corner: Complex, freedom: Freedom) -> float:
 
 
 def _build_rack_freedom(gear: Gear) -> Freedom:
-    """Build the freedom of points in an external gear's rack, whose reference line is ``shift`` outside the pitch
-    circle.
+    """Build the freedom of points in an external gear's rack; its reference line is ``shift`` outside the pitch circle.
 
     The tooth is a trapezium, inset from flanks and tip of the rack by the radius of its corners and then widened by it.
     """

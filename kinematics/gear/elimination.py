@@ -6,7 +6,7 @@ from fractions import Fraction
 
 
 class Elimination:
-    """Gauss–Jordan elimination over the rationals, one equation at a time: reduced rows by their pivot."""
+    """Gauss–Jordan elimination over the rationals, one equation at a time; reduced rows are stored by their pivot."""
 
     def __init__(self, unknowns: tuple[str, ...]) -> None:
         self._unknowns = unknowns

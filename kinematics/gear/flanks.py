@@ -63,7 +63,7 @@ def compute_rack_form(gear: Gear, depth: float) -> float:
 
     That is where the rack's straight flank ends; a negative value means undercut.
 
-    ``depth``: depth of the rack's straight flank below its reference line, modules.
+    ``depth`` is the depth of the rack's straight flank below its reference line, modules.
     """
     sine = math.sin(gear.pressure_angle)
     return gear.pitch_radius * sine - gear.module * (depth - gear.shift) / sine
@@ -112,7 +112,7 @@ class ShapedRing:
 
     @property
     def is_trimmed(self) -> bool:
-        """Whether the cutter trims tips of the ring: outside the line of action, or where it has no involute."""
+        """Whether the cutter trims the ring's tips, either outside the line of action or where it has no involute."""
         mesh = self.cutting
         tip = math.sqrt(max(self.ring.tip_radius**2 - self.ring.base_radius**2, 0.0))
         # The cutter's tangent point bounds the involute that it can generate.
@@ -123,9 +123,9 @@ class ShapedRing:
 class Contact:
     """A mesh whose involutes begin at ``forms``, measured from the tangent points of the base circles.
 
-    ``reaches`` are the deepest points reached by the mate's tip on pinion and gear, measured likewise. Specific sliding
-    at a point of contact is the sliding velocity over the velocity of the contact along the flank; it is evaluated
-    where it is largest on each flank, at the deepest point reached: −∞ if that lies on the base circle.
+    ``reaches`` are the deepest points that the mate's tip reaches on pinion and gear, measured in the same way.
+    Specific sliding at a point of contact is the sliding velocity over the velocity of the contact along the flank. It
+    is evaluated where it is largest on each flank, at the deepest point: −∞ if that lies on the base circle.
     """
 
     mesh: Mesh

@@ -3,7 +3,7 @@
 A machine-tool gearbox is a row of shafts; between each two neighbours one of several gear pairs is engaged. The number
 of spindle speeds is the product of the numbers of pairs of all stages (Rao, Sec. 8.5). A layshaft gearbox of
 a vehicle has a head pair that always turns the layshaft, a pair from there to the main shaft for every gear, and an
-idler in the pair that reverses.
+idler in the reverse gear.
 """
 
 from __future__ import annotations
@@ -88,12 +88,12 @@ def compute_progression(lowest: float, highest: float, count: int) -> tuple[floa
 
 
 def series_ratio(series: str, step: int = 1) -> float:
-    """Return the progression ratio of every ``step``-th number of a series: 10^(step/r), r numbers in a decade."""
+    """Return the progression ratio of every ``step``-th number of a series: 10^(step/r) for r numbers in a decade."""
     return float(10.0 ** (step * SERIES_STRIDES[series] / len(R40)))
 
 
 def list_preferred_numbers(series: str, start: float, count: int, step: int = 1) -> list[float] | None:
-    """List every ``step``-th preferred number (rounded by ISO 3) from ``start`` on; None if ``start`` is none."""
+    """List every ``step``-th preferred number (rounded by ISO 3) from ``start`` on; None if ``start`` is not one."""
     # Bring the start into the tabulated decade; the tolerance absorbs binary rounding of decimal input.
     decade = 0
     value = start

@@ -252,6 +252,7 @@ def _build_flow(
     torques: dict[str, Fraction],
     shares: list[Fraction],
 ) -> PowerFlow:
+    """Build the power flow from the tooth forces and torques; its efficiency and shares are left open."""
     loads = []
     for mesh, force, rate, share in zip(train.meshes, forces, relative, shares, strict=True):
         first, second, carrier = (force * torque for torque in _compute_torques(mesh, share))

@@ -61,8 +61,8 @@ def draw_half_space(gear: Gear, helix_angle: float = 0.0) -> Complex:
 
     Returns
     -------
-    Outline
-        Points with rising polar angle from 0 to π/z, gear centre at 0.
+    complex
+        Points with polar angles that rise from 0 to π/z; the gear's centre is at 0.
 
     Raises
     ------
@@ -84,7 +84,10 @@ def draw_outline(gear: Gear, tooth_at: float = 0.0, helix_angle: float = 0.0) ->
 
 
 def _build_corner(gear: Gear, helix_angle: float) -> _Corner:
-    """Build the corner of the rack; for a helical gear in the normal plane, except ``beside`` (plane of rotation)."""
+    """Build the corner of the rack.
+
+    For a helical gear it is given in the normal plane, except for ``beside``, which is in the plane of rotation.
+    """
     phi, m, dedendum, stretch = gear.pressure_angle, gear.module, gear.dedendum, 1.0
     if helix_angle:
         cosine = math.cos(helix_angle)
@@ -98,6 +101,7 @@ def _build_corner(gear: Gear, helix_angle: float) -> _Corner:
 
 
 def _draw_external(gear: Gear, corner: _Corner) -> Complex:
+    """Draw half a tooth space of an external gear: root arc, fillet, involute and tip arc."""
     fillet = _trace_fillet(gear.pitch_radius, corner, np.linspace(0.0, _find_fillet_end(gear, corner), FILLET_POINTS))
     # The involute cannot start below the base circle.
     start, tip = max(abs(fillet[-1]), gear.base_radius), _find_tip(gear)
@@ -142,8 +146,10 @@ def find_involute_start(gear: Gear, helix_angle: float = 0.0) -> float:
 
 
 def find_full_depth_starts(teeth: NDArray[np.float64], pressure_angle: float) -> NDArray[np.float64]:
-    """Find the starts of the involutes of unshifted full-depth spur gears, in modules; see
-    :func:`find_involute_start`."""
+    """Find the starts of the involutes of unshifted full-depth spur gears, in modules.
+
+    See :func:`find_involute_start`.
+    """
     corner = _build_corner(Gear(10.0, 1.0, pressure_angle), 0.0)  # the rack does not depend on the number of teeth
     space = 0.5 * math.pi / teeth - involute(pressure_angle)
     return _find_starts(0.5 * teeth, pressure_angle, space, corner)

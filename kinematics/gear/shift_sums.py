@@ -1,8 +1,8 @@
 """Feasible sums of profile shifts of a pair of external gears, compiled; all lengths in modules.
 
-A sum is feasible if its best split is (:mod:`kinematics.gear.splits`). Over a range of sums the margin of the best
-split may rise and fall more than once, so the feasible sums are a list of intervals. They are found on a grid, near
-every local maximum and minimum on it, and by bisection of every change of feasibility.
+A sum is feasible if its best split satisfies all constraints (:mod:`kinematics.gear.splits`). Over a range of sums the
+margin of the best split may rise and fall more than once, so the feasible sums are a list of intervals. They are found
+on a grid, near every local maximum and minimum on it, and by bisection of every change of feasibility.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def _is_extreme(
     """Return whether an infeasible sum is a local maximum of the margin, or a feasible one a local minimum."""
     before, after = max(0, i - 1), min(len(sums) - 1, i + 1)
     sign = -1.0 if margins[i, 0] >= -MARGIN_TOLERANCE else 1.0
-    # The bounds have a tolerance of TOLD; where it could change the decision, golden sections decide.
+    # The bounds differ by up to MARGIN_RESOLUTION; where that could change the decision, golden sections decide.
     own = (
         min(sign * (margins[i, 0] - MARGIN_RESOLUTION), sign * margins[i, 1]),
         max(sign * (margins[i, 0] - MARGIN_RESOLUTION), sign * margins[i, 1]),

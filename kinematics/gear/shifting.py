@@ -24,7 +24,7 @@ MARGIN_TOLERANCE = 1e-10
 """Violation of a constraint, in modules, that is tolerated: rounding must not reject pairs that lie on a limit."""
 
 FULL_PRECISION = 4e-16
-"""Relative tolerance of tan φ_w if every digit counts."""
+"""Relative tolerance of tan φ_w for full double precision."""
 
 GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -32,8 +32,8 @@ GOLDEN_SECTION_STEPS = 52
 """Number of golden sections of an interval: 1e-11 of it remains."""
 
 TIP_SLOPE_BOUND = 6.0
-"""Slope of the tip thickness over the shift at most; with 2 / sin φ for the ends of involutes it bounds all
-margins'."""
+"""Maximum slope of the tip thickness over the shift. Together with 2 / sin φ, the slope of the ends of involutes, it
+bounds the slopes of all margins."""
 
 MARGIN_RESOLUTION = 1e-5
 """Accuracy, modules, of a margin that is compared with other margins."""
@@ -157,7 +157,7 @@ def compute_margin_with_rack(
     """Compute the margin of a split, given the rack of the constraints."""
     other = working.total - shift
     least = min(demands.addendum + shift - working.shortening, demands.addendum + other - working.shortening)
-    # Without an addendum the other margins are neither concave nor monotonic, hence meaningless.
+    # Without an addendum the other margins are neither concave nor monotonic, so the search cannot use them.
     if not least >= -MARGIN_TOLERANCE:
         return least
     left = compute_margins(teeth, mate, working, shift, demands, rack)[0]
@@ -202,7 +202,10 @@ def compute_margins(
 
 @njit(cache=True, nogil=True)
 def bound_splits(working: Working, demands: PairConstraints) -> tuple[float, float]:
-    """Return the range of shifts of the first gear in which both are within limits and keep an addendum; or nan."""
+    """Return the range of shifts of the first gear in which both gears are within their limits and keep an addendum.
+
+    Both ends are nan if there is no such range.
+    """
     total, head = working.total, working.shortening - demands.addendum
     # Limits of the second shift, expressed by the first.
     low = max(demands.least_shift, total - demands.most_shift, head)

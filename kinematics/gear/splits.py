@@ -79,6 +79,7 @@ def _compute_slopes(
     demands: PairConstraints,
     rack: Rack,
 ) -> Slopes:
+    """Compute the slopes of all margins at a split of the interval from ``low`` to ``high``."""
     base, mate_base = 0.5 * teeth * rack.cosine, 0.5 * mate * rack.cosine
     # The distance from the mate's fillet is steepest where the tip reaches deepest: 1 / sin φ − tip / reach.
     far, mate_far = tips.radius + (high - split), tips.mate_radius + (split - low)
@@ -103,7 +104,7 @@ def _compute_slopes(
 def find_sound_split(
     teeth: int, mate: int, working: Working, demands: PairConstraints, rack: Rack, guess: float
 ) -> float:
-    """Find a feasible split of the sum; nan: there is none; infinite: too close to a limit to decide.
+    """Find a feasible split of the sum; nan if there is none, infinite if it is too close to a limit to decide.
 
     Parameters
     ----------
@@ -123,7 +124,7 @@ def find_sound_split(
             least = min(least, value)
         if least >= CLEAR_MARGIN - MARGIN_TOLERANCE:
             return split
-        # Between the tolerance and CLEAR the decision is left to golden sections.
+        # Between the tolerance and CLEAR_MARGIN the decision is left to golden sections.
         if least >= missed:
             break
         slopes = _compute_slopes(teeth, mate, left, tips, low, high, split, demands, rack)

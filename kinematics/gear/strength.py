@@ -125,7 +125,10 @@ def compute_bending_geometry(contact: Contact, second: bool) -> float:
 
 
 def compute_contact_geometry(pressure_angle: float, ratio: float, internal: bool, sharing: float = 1.0) -> float:
-    """Compute AGMA's factor I (eq. 14-23); ``ratio`` ≥ 1: gear teeth over pinion teeth, ``sharing``: m_N."""
+    """Compute AGMA's factor I (eq. 14-23).
+
+    ``ratio`` ≥ 1 is gear teeth over pinion teeth, and ``sharing`` is the load sharing ratio m_N.
+    """
     share = ratio / (ratio - 1.0 if internal else ratio + 1.0)
     return 0.5 * math.cos(pressure_angle) * math.sin(pressure_angle) * share / sharing
 
@@ -148,6 +151,7 @@ def compute_load_sharing(contact_ratio: float, base_pitch: float, base_helix: fl
     base_helix : float
         Helix angle on the base cylinders, radians, positive.
     width : float
+        Face width.
     """
     fraction = contact_ratio - math.floor(contact_ratio)
     lost = fraction * (1.0 - fraction) * base_pitch / math.tan(base_helix)
@@ -191,7 +195,11 @@ def _compute_fillet_radius(gear: Gear) -> float:
 
 @dataclass(frozen=True)
 class Load:
-    """A tangential load on a pair: force, speed at the working pitch circles, width, module and pinion diameter."""
+    """A tangential load on a pair.
+
+    ``force`` is in newtons, ``speed`` at the working pitch circles in m/s; face ``width``, ``module`` and
+    ``pinion_diameter`` are in millimetres.
+    """
 
     force: float
     speed: float

@@ -26,6 +26,7 @@ FULL_DEPTH_DEDENDUM = 1.25
 """Full-depth teeth, shares of the module (Norton, Table 9-1, coarse pitch)."""
 
 PRESSURE_ANGLE = math.radians(20.0)
+"""Default pressure angle, radians: 20°."""
 
 LIMIT_TOLERANCE = 1e-12
 """Share of the limiting radius by which a tip may exceed it: teeth on the limit are sound, and rounding must not reject

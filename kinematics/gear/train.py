@@ -253,7 +253,7 @@ class OrdinaryTrain:
         )
 
     def torques(self, input_torque: float, mesh_efficiency: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
-        """Return the torque of each shaft from input to output; idlers have none.
+        """Return the torque of each shaft from input to output; idler shafts are left out.
 
         Parameters
         ----------

@@ -113,7 +113,7 @@ class WormDrive:
 
     @cached_property
     def dimensions(self) -> WormSet:
-        """Dimensions of worm and gear; raises for impossible ones."""
+        """Dimensions of worm and gear; impossible ones raise a :class:`DimensionError`."""
         return WormSet(self.threads, self.gear_teeth, math.pi * self.module, self.quotient * self.module)
 
     @property
@@ -168,8 +168,9 @@ class WormDrive:
         return math.tan(self.lead_angle) * math.cos(self.normal_pressure_angle) <= friction
 
     def forces(self, torque: float, friction: float) -> WormForces:
-        """Return the forces of sliding teeth at a torque of the worm (Shigley, eq. 13-43); −friction if the gear
-        drives.
+        """Return the forces of sliding teeth at a torque of the worm (Shigley, eq. 13-43).
+
+        If the gear drives, ``friction`` is negative.
 
         Raises
         ------

@@ -20,7 +20,7 @@ MAX_NEWTON_STEPS = 30
 
 @dataclass(frozen=True)
 class DragLink:
-    """A drag link by its lengths over the ground's, which is the shortest; arrays broadcast over designs.
+    """A drag link by its lengths relative to the ground link, which is the shortest; arrays broadcast over designs.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class DragLink:
     output: float | Real
 
     def output_motion(self, angle: Real) -> Motion:
-        """Return the output's angle ψ from the ground line and its derivatives by the input angle; NaN if impossible.
+        """Return the output's angle ψ from the ground line and its derivatives by the input angle; NaN if not closed.
 
         The joint lies on the left of the line from the input's pin to the output's pivot, and ψ grows by a turn with
         each turn of the input.

@@ -35,7 +35,8 @@ from kinematics.arrays import Real
 Drive = Literal["geneva_external", "geneva_internal", "geneva_spherical"]
 
 ENTRY_TOLERANCE = 1e-12
-"""Angle past the end of an index at which the roller still counts as in the slot: rounding."""
+"""Rounding of angles: radians past the end of an index at which the roller still counts as in the slot, and share of
+the angle between entries within which an angle just before an entry counts as that entry."""
 
 
 class Motion(NamedTuple):
@@ -118,7 +119,7 @@ class Geneva:
         """Crank angle α ≥ 0 of the maximum magnitude of the wheel's acceleration, which occurs at ± this angle.
 
         External: cos α = √(k² + 2) − k with k = (1 + λ²)/4λ (Norton, §3.10); spherical: the root of a quadratic in
-        sin² α; where the stationary point lies outside the index, as in every internal drive, the index's end.
+        sin² α. If the stationary point lies outside the index, as in every internal drive, it is the index's end.
         """
         half, ratio = self.half, self.ratio
         if self.drive == "geneva_internal":
@@ -138,7 +139,7 @@ class Geneva:
         return np.asarray(self._count_entries(angle, rollers)[1] <= 2.0 * self.half + ENTRY_TOLERANCE)
 
     def _count_entries(self, angle: Real, rollers: int) -> tuple[Real, Real]:
-        """Count the rollers that have entered since, and return the angle since the last entry."""
+        """Count the rollers that have entered since the first entry, and return the angle since the last one."""
         pitch = 2.0 * math.pi / rollers
         # The tolerance assigns an angle at an entry to the new roller.
         count = np.floor(angle / pitch + ENTRY_TOLERANCE)

@@ -46,8 +46,7 @@ def is_material(wheel: Wheel, points: Complex) -> Mask:
 
 
 def _fold_into_sector(points: Complex, step: float, axis: float) -> Complex:
-    """Fold points about the wheel's axis into the sector around ``axis``, by its rotational symmetry, and rotate it to
-    x."""
+    """Fold points into the sector around ``axis`` by the wheel's rotational symmetry, and rotate that sector to x."""
     turned = np.round((np.angle(points) - axis) / (2.0 * step)) * 2.0 * step + axis
     return np.asarray(points * np.exp(-1j * turned))
 
@@ -59,7 +58,7 @@ def sweep_rays(wheel: Wheel, drive: Geneva, directions: Real) -> tuple[Real, Rea
     ----------
     wheel : Wheel
     drive : Geneva
-        The same drive, of one roller.
+        The drive of that wheel, with one roller.
     directions : float, shape (k,)
         Radians in the crank's frame, counter-clockwise from the roller as seen with the crank turning that way.
 
@@ -141,10 +140,10 @@ class Disc:
     Attributes
     ----------
     angle : float, shape (k,)
-        Ascending, radians from the first roller; over a whole turn of a disc, over its arc where it is a crescent.
+        Directions, ascending, radians from the first roller: over a whole turn for a disc, over its arc for a crescent.
     outer, inner : float, shape (k,)
-        The inner radius is 0 for a disc about the crank's axis; the horns of an internal drive pass that axis and leave
-        a crescent, which is fastened to the arm next to the wheel's plane.
+        Radii in these directions. The inner radius is 0 for a disc about the crank's axis. The horns of an internal
+        drive pass that axis and leave a crescent, which is fastened to the arm next to the wheel's plane.
     """
 
     angle: Real

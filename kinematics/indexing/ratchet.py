@@ -86,8 +86,10 @@ class Ratchet:
 
     @property
     def locking_angle(self) -> float:
-        """Minimum over the face of the angle between its normal and the line to the pivot, positive if drawn in,
-        radians."""
+        """Minimum over the face of the angle between its normal and the line to the pivot, radians.
+
+        It is positive if the pawl is drawn in.
+        """
         return _compute_locking_angle(self.face, self.reach, self.pawl)
 
     @property

@@ -117,8 +117,7 @@ class Wheel:
 
     @cached_property
     def outline(self) -> Complex:
-        """Complete outline, counter-clockwise from the middle of the locking arc before slot 0; its first point closes
-        it."""
+        """Complete outline, counter-clockwise from the middle of the locking arc before slot 0, closed."""
         half = self.half_sector
         sector = np.concatenate([half[::-1].conj(), half[1:-1]])
         turns = np.exp(2j * self.step * np.arange(self.stations))

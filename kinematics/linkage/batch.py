@@ -158,8 +158,10 @@ Fields = tuple[Mask, Complex, Complex, Complex, Real, Real]
 def sweep_positions(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> Fields:
-    """Compute configurations by a linkage's kernel ``whole_positions``; parameters and errors as for
-    :func:`build_sweep`."""
+    """Compute configurations by a linkage's kernel ``whole_positions``.
+
+    The parameters and errors are those of :func:`build_sweep`.
+    """
     at = build_sweep(blocks, input_angle, assembly)
     points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
     kernels.whole_positions(*at[:4], points, angles, valid)
@@ -169,8 +171,10 @@ def sweep_positions(
 def sweep_coupler_points(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> CouplerPoints:
-    """Compute coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for
-    :func:`build_sweep`."""
+    """Compute coupler points by a linkage's kernel ``coupler_points``.
+
+    The parameters and errors are those of :func:`build_sweep`.
+    """
     at = build_sweep(blocks, input_angle, assembly)
     points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
     kernels.coupler_points(*at[:4], points, valid)
@@ -184,7 +188,10 @@ def sweep_motion(
     assembly: ArrayLike,
     *rates: ArrayLike,
 ) -> tuple[Fields, Fields, Fields, Fields]:
-    """Compute configurations and three time derivatives by ``whole_motion``; ``rates``: speed, acceleration, jerk."""
+    """Compute configurations and three time derivatives by a linkage's kernel ``whole_motion``.
+
+    ``rates`` are the speed, acceleration and jerk of the input.
+    """
     positions_shape, at, rows = build_rated_sweep(blocks, input_angle, assembly, *rates)
     points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
     valid = np.empty((2, *at.flat), np.bool_)

@@ -4,7 +4,7 @@ With the wheelbase L and the kingpin distance w the angles θ of the inner and �
 
     cot φ − cot θ = w/L
 
-(Rao, eq. 4.15); Davis's gear keeps that exactly where its arms lean by α with 2 tan α = w/L (Rao, eq. 4.17).
+(Rao, eq. 4.15). Davis's gear satisfies this exactly if its arms are inclined by α with 2 tan α = w/L (Rao, eq. 4.17).
 """
 
 from __future__ import annotations
@@ -16,7 +16,10 @@ from kinematics.arrays import Real
 
 
 def compute_outer_angle(inner: ArrayLike, ratio: ArrayLike) -> Real:
-    """Compute the outer wheel's angle from the inner one's, radians; ``ratio`` is w/L. 0 for 0, smooth there."""
+    """Compute the outer wheel's angle from that of the inner wheel, radians; ``ratio`` is w/L.
+
+    The outer angle is 0 where the inner angle is 0, and smooth there.
+    """
     theta = np.asarray(inner, np.float64)
     # Multiplied by sin θ, the cotangent relation has no singularity at θ = 0.
     return np.asarray(np.arctan2(np.sin(theta), np.cos(theta) + np.asarray(ratio) * np.sin(theta)))

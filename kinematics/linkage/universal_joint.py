@@ -45,7 +45,7 @@ class Joint(NamedTuple):
 
 
 class ShaftMotion(NamedTuple):
-    """Output over input angles: angle, and its first and second derivative by the input's.
+    """Output over input angles: its angle, and the first and second derivatives by the input angle.
 
     ``angle`` is the rotation from the output's position at input angle 0.
     """
@@ -69,7 +69,8 @@ class ShaftExtremes(NamedTuple):
     acceleration : float
         Maximum magnitude of the output's acceleration, over the square of the input speed.
     steepest_at : float
-        Its input angle measured from ``fastest_at``, radians in [0, π/2]; the mirror image occurs too.
+        Input angle of that acceleration, measured from ``fastest_at``, radians in [0, π/2]; it also occurs at the
+        mirror image of this angle.
     equivalent_angle : float
         Angle of the single joint with the same motion, radians.
     """
@@ -162,7 +163,7 @@ def find_shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
 
 
 def compute_joint_angle(fluctuation: float) -> float:
-    """Compute the joint angle with a fluctuation (ω_max − ω_min)/ω_mean; radians (Rao, Solved Problem 4.10)."""
+    """Compute the joint angle, radians, with a given fluctuation (ω_max − ω_min)/ω_mean (Rao, Solved Problem 4.10)."""
     value = np.asarray(fluctuation)
     require("fluctuation", "positive or zero, and finite", value, np.isfinite(value) & (value >= 0.0))
     cosine = 0.5 * (math.hypot(fluctuation, 2.0) - fluctuation)

@@ -29,7 +29,7 @@ FRESH_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Allowance:
-    """Remaining requests of a key, seconds until all are available again, and the rule."""
+    """Rate limit of a key: its remaining requests, the seconds until all are available again, and the rule."""
 
     left: int
     reset_s: int

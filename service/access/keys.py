@@ -1,8 +1,8 @@
 """API keys and their tenants.
 
-Words: a *tenant* owns jobs and sees only its own; a *key* is a secret that identifies a tenant, who may have several. A
-key is shown once, when it is created; the store has its hash. A key has 256 random bits and cannot be guessed, so a
-plain SHA-256 protects it; slow password hashes are for secrets chosen by people.
+A *tenant* owns jobs and sees only its own. A *key* is a secret that identifies a tenant, who may have several keys. A
+key is shown once, when it is created, and the store keeps only its hash. A key has 256 random bits and cannot be
+guessed, so a plain SHA-256 is sufficient protection; slow password hashes are for secrets chosen by people.
 
 A revoked key stays in the store, so a service that has ever had a key does not become open again by revoking it.
 """
@@ -39,7 +39,7 @@ class TenantExists(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key as the store knows it, without the secret."""
+    """A stored key, without the secret."""
 
     id: str
     tenant: str

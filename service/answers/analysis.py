@@ -16,7 +16,7 @@ def analyse(body: object) -> bytes:
     Raises
     ------
     Refusal
-        422, with the place of each fault.
+        422, with the place of each fault, if the body is not a valid analysis request.
     """
     from kinematics import errors as kinematics
     from synthesis.analyses import get_family

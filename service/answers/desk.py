@@ -37,7 +37,8 @@ LOAD_WAIT_S = 45.0
 """Time that an analysis waits for the core to be loaded, seconds; it takes five seconds, once, on an idle machine."""
 
 DRAWING_CPU_S, DRAWING_WALL_S = 30.0, 60.0
-"""The same limits for drawings, animations, reports and simulations; a report shows up to 20 designs in full."""
+"""Maximum processor time and duration of a drawing, animation, report or simulation, seconds. A report shows up to 20
+designs in full, which takes longest."""
 
 MEMORY_MB = 768
 """Memory of a call beyond that of its idle process, MiB."""
@@ -68,7 +69,11 @@ class AnswerDesk:
         )  # fmt: skip
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Load the template once ``after`` returns true: its kernels are compiled, or must be now. Return at once."""
+        """Load the template in the background as soon as ``after`` returns true.
+
+        ``after`` returns true once the kernels of the template are compiled, or once the compilation has ended without
+        them and a request waits; the template then compiles them itself.
+        """
         threading.Thread(target=self._load, args=(after,), name="answers", daemon=True).start()
 
     def stop(self) -> None:
@@ -98,7 +103,7 @@ class AnswerDesk:
 
         Raises
         ------
-        Busy, GivenUp, Gone, Lost
+        Busy, GivenUp, ClientGone, ProcessLost
             As :meth:`service.jobs.processes.request_pool.RequestPool.call`, and ``Busy`` while kernels are compiled.
         """
         await self._wait_until_loaded()

@@ -1,4 +1,4 @@
-"""The protocol of the clients without input and output: requests, attempts and events."""
+"""The protocol shared by both clients, without any input or output: requests, attempts and events."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ class EventReader:
                 self._data += value
             case "id":
                 self._id = value
-            # A blank line ends an event; without data it is none.
+            # A blank line ends an event. An event without data is ignored, as the standard requires.
             case "" if not line and self._data:
                 name, data, event_id = self._name, json.loads(self._data), self._id
                 self._name, self._data, self._id = "message", "", None

@@ -1,11 +1,11 @@
 """Contours of a field of samples by marching squares, as closed curves between the samples.
 
 If the field passes the level between two neighbouring samples, it is interpolated linearly, and a contour crosses the
-line between them there (Lorensen and Cline, Computer Graphics 21 (1987), 163–169, in the plane). Each crossing lies on
-the common side of two squares, and each square connects one of its crossings to another one. So each crossing has
-exactly one successor, and the contours are the cycles. Higher values lie to the left of a contour, which therefore runs
-counter-clockwise around an island. In a square whose corners are alternately high and low, the high ones are joined
-unless the mean of the four is below the level; so lines one pixel wide hold together.
+line between them there (the plane case of Lorensen and Cline, Computer Graphics 21 (1987), 163–169). Each crossing lies
+on the common side of two squares, and each square connects its crossings in pairs. So each crossing has exactly one
+successor, and the contours are the cycles. Higher values lie to the left of a contour, which therefore runs
+counter-clockwise around an island. In a square whose corners are alternately high and low, the high corners are joined
+unless the mean of the four is below the level. This keeps lines one pixel wide connected.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _JOINED_PAIRS = {
     5: ((_BOTTOM_SIDE, _RIGHT_SIDE), (_TOP_SIDE, _LEFT_SIDE)),
     10: ((_LEFT_SIDE, _BOTTOM_SIDE), (_RIGHT_SIDE, _TOP_SIDE)),
 }
-"""The two ambiguous squares with a high centre, which joins the high corners; below, those with a low centre."""
+"""Connections in the two ambiguous squares if their centre is high and joins the high corners."""
 _SEPARATE_PAIRS = {
     5: ((_BOTTOM_SIDE, _LEFT_SIDE), (_TOP_SIDE, _RIGHT_SIDE)),
     10: ((_RIGHT_SIDE, _BOTTOM_SIDE), (_LEFT_SIDE, _TOP_SIDE)),
@@ -61,7 +61,7 @@ def trace_contours(field: NDArray[np.uint8], level: float, most: int) -> list[Co
 
     Raises
     ------
-    TooMany
+    TooManyCrossings
         If there are more crossings.
     """
     high = field > level

@@ -16,7 +16,7 @@ from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import DEFAULT_TOLERANCE
 
 DUPLICATE_TOLERANCE = 1e-12
-"""Distance, relative to the greatest coordinate, up to which two points count as one: they differ by rounding only."""
+"""Distance up to which two points are identical, as a share of the maximum coordinate: they differ by rounding only."""
 
 DENSE_CHORD_SHARE = 0.125
 """Share of the tolerance for the chords between the dense points; the rest is for thinning them out."""
@@ -26,16 +26,20 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 @dataclass(frozen=True)
 class PointRequest:
-    """Requested points of a curve. Without ``tolerance`` it is a share of the curve's extent, and corners are kept."""
+    """Request for the points of a curve.
+
+    If ``tolerance`` is None, the tolerance is a share of the curve's extent, and corners are kept.
+    """
 
     tolerance: float | None
     max_points: int
 
 
 class Points(NamedTuple):
-    """Selected points x + iy, shape (n,), the reached tolerance, and the number of dense points they are selected from.
+    """Points selected on a curve.
 
-    A closed curve has its first point once.
+    ``points`` are x + iy, shape (n,); the first point of a closed curve is not repeated. ``tolerance`` is the maximum
+    deviation of the curve from the chords. ``looked`` is the number of dense points from which they were selected.
     """
 
     points: Complex

@@ -40,7 +40,7 @@ class ImportDesk:
         ------
         DrawingError
             If the file is unusable or exceeds the limits of time or memory.
-        Busy, Gone, Lost
+        Busy, ClientGone, ProcessLost
             As :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """
         try:

@@ -47,7 +47,11 @@ FINE_TOLERANCE, COARSE_TOLERANCE = 0.1, 0.5
 
 @dataclass(frozen=True)
 class Picture:
-    """Contours in pixels, longest first; whether each was stepped; number of omitted specks; size of a pixel in mm."""
+    """Contours of a picture: in pixels, longest first.
+
+    The other fields are: whether each contour was stepped, the number of omitted specks, and the size of a pixel in
+    millimetres.
+    """
 
     contours: list[Complex]
     stepped: list[bool]
@@ -74,7 +78,8 @@ def read_picture(content: bytes) -> Picture:
             f"The contours of the picture have more than {MAX_CROSSINGS} points, like those of a photograph. Send a "
             "drawing in two colours."
         ) from None
-    # The padding shifts samples by 1, their place in the middle of a pixel by -1/2: the crossings shift by 1/2.
+    # The padding shifts the samples by 1, and a sample lies in the middle of its pixel, at 1/2: together the crossings
+    # are shifted by 1/2.
     kept = [one - complex(0.5, 0.5) for one in found if len(one) >= MIN_CONTOUR_CROSSINGS]
     stepped = [_is_stepped(one) for one in kept]
     smooth = [_smooth_contour(one) if steps else one for one, steps in zip(kept, stepped, strict=True)]

@@ -1,10 +1,10 @@
 """Thinning of the points of a curve within a chord tolerance: many in bends, few on straight pieces.
 
-From a point on, the curve is followed as long as one chord stands for it: as long as it does not turn back, and the
-direction to the next point lies within the wedge in which every point passed so far is no farther than the tolerance
-from the ray. That is the longest chord that begins there, and the time is proportional to the number of points (Zhao
-and Saalfeld, Linear-time sleeve-fitting polyline simplification algorithms, AutoCarto 13, 1997, pp. 214–223). On a
-circle all chords but the last are equally long.
+From an anchor point the curve is followed as long as one chord can represent it. That is the case as long as the curve
+does not turn back and the direction to the next point stays in a wedge. The wedge contains the rays from the anchor
+that pass every point so far within the tolerance. The result is the longest possible chord from the anchor, and the
+time is proportional to the number of points (Zhao and Saalfeld, Linear-time sleeve-fitting polyline simplification
+algorithms, AutoCarto 13, 1997, pp. 214–223). On a circle all chords except the last are equally long.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MAX_TRIES = 12
 """Maximum number of tolerances tried to reach a number of points; each is a pass over the curve."""
 
 MIN_FILL_SHARE = 0.9
-"""Share of the permitted number of points with which the search for a smaller tolerance ends."""
+"""Minimum share of the permitted number of points at which the search for a smaller tolerance ends."""
 
 
 def reduce_points(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -41,7 +41,7 @@ def reduce_points(points: Complex, tolerance: float, kept: Sequence[bool] | NDAr
     last = len(x) - 1
     chosen = [0]
     anchor, k = 0, 1
-    # The wedge by vectors along its right and left sides, and the square of the greatest distance so far.
+    # The wedge is stored as vectors along its right and left sides, with the square of the maximum distance so far.
     opened = False
     right_x = right_y = left_x = left_y = reach = 0.0
     narrow = tolerance * tolerance

@@ -54,7 +54,7 @@ class JobDesk:
     ) -> JobRow:
         """Store a job, submit it, wait up to ``wait_s`` seconds for its end, and return its state after that.
 
-        A repeated request with the same key returns the job it created first.
+        A repeated request with the same key returns the job that the first request created.
 
         Raises
         ------

@@ -17,7 +17,7 @@ class Executor(Protocol):
         ...
 
     def resume(self) -> None:
-        """Take up stored jobs that no process runs. Called once, when the store has its tables."""
+        """Resume stored jobs that no process is running. Called once, when the store has its tables."""
         ...
 
     def subscribe(self, changed: Changed) -> None:

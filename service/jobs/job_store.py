@@ -60,10 +60,10 @@ _SERIAL_THRESHOLD = 8
 jobs that arrive at the same time may share a turn."""
 
 _MAX_CONCURRENT_INSERTS = 500
-"""More than the number of concurrent inserts of all servers: this far below its limit, a queue needs no exact count."""
+"""Upper bound of the concurrent inserts of all servers. A queue this far below its limit needs no exact count."""
 
 _NO_LIMIT = 1 << 30
-"""Limit of a queue without one; no queue gets as long."""
+"""Limit that stands for no limit: no queue gets this long."""
 
 _MAX_MESSAGE_LENGTH = 200  # the width of its column
 

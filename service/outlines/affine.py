@@ -22,12 +22,12 @@ _ARGUMENT_COUNTS = {
 }
 
 CONFORMAL_TOLERANCE = 1e-9
-"""Relative difference of the two principal stretches up to which a map still takes circles to circles."""
+"""Relative difference of the two principal stretches up to which a map is considered to keep circles circular."""
 
 
 @dataclass(frozen=True)
 class Affine:
-    """z ↦ turn·z + flip·z̄ + shift."""
+    """An affine map of the plane, z ↦ turn·z + flip·z̄ + shift."""
 
     turn: complex = 1.0
     flip: complex = 0.0
@@ -66,7 +66,7 @@ def parse_transform(text: str) -> Affine:
     Raises
     ------
     ValueError
-        The text is not a list of transforms.
+        If the text is not a list of transforms.
     """
     whole, at = Affine(), 0
     text = text.strip()

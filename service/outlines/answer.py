@@ -77,14 +77,14 @@ def describe_source(source: Source) -> dict[str, str | None]:
 
 
 def list_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
-    """Return the first elements without an outline, at most ``MOST_TOLD``, with their reasons."""
+    """Return the first elements without an outline, at most ``MAX_LISTED``, with their reasons."""
     return [
         LeftOut(**describe_source(source), reason=format_sentence(reason)) for source, reason in left_out[:MAX_LISTED]
     ]
 
 
 def truncate_text(text: str | None) -> str | None:
-    """Return a text from the drawing as valid UTF-8, truncated to ``LONGEST_NAME`` characters."""
+    """Return a text from the drawing as valid UTF-8, truncated to ``MAX_NAME_LENGTH`` characters."""
     if text is None:
         return None
     spelt = text.encode("utf-8", "replace").decode()

@@ -14,8 +14,8 @@ from kinematics.arrays import Complex
 from service.outlines.limits import MAX_COORDINATE
 
 STRAIGHTNESS_TOLERANCE = 1e-12
-"""A cubic counts as a line if its control points deviate by less than this share of its length from those of a line;
-transforms round.
+"""Maximum deviation of a cubic's control points from those of a line, as a share of its length, for which the cubic
+counts as a line. Transforms cause rounding errors of this order.
 """
 
 
@@ -61,7 +61,7 @@ class Curve:
 
     @property
     def finite(self) -> bool:
-        """Whether every coordinate is a number within ``FARTHEST``."""
+        """Whether every coordinate is a finite number of at most ``MAX_COORDINATE`` in magnitude."""
         if self.circle is not None:
             return abs(self.circle.centre) + self.circle.radius <= MAX_COORDINATE
         return bool(np.all(np.abs(self.pieces) <= MAX_COORDINATE))
@@ -111,7 +111,7 @@ def make_polyline(points: Complex) -> Complex:
 
 
 def count_chords(pieces: Complex, tolerance: float) -> NDArray[np.int64]:
-    """Count the chords for each cubic that keep every chord within the tolerance of its curve, shape (n,).
+    """Return the number of chords that each cubic needs to stay within the tolerance, shape (n,).
 
     The distance of a cubic from a chord over 1/n of its parameter is at most M/(8n²), where M = 6 max|Δ²| bounds its
     second derivative by the second differences of its control points; Wang, Journal of Shanghai Jiaotong University

@@ -10,7 +10,11 @@ from service.outlines.curves import Curve, Source
 
 @dataclass(frozen=True)
 class Drawing:
-    """Curves in drawing units with y upwards, elements that are no curves with the reason, and millimetres per unit."""
+    """The curves of a drawing, in drawing units with y upwards.
+
+    ``left_out`` has the elements that are not curves, each with the reason. ``millimetres`` is the size of the drawing
+    unit in millimetres, None if it is unknown.
+    """
 
     format: Literal["svg", "dxf"]
     curves: list[Curve]

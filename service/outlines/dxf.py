@@ -33,10 +33,10 @@ PATH_TYPES = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOL
 TEXT_TYPES = {"TEXT", "MTEXT", "ATTRIB", "ATTDEF"}
 
 MAX_FIT_POINTS = 500
-"""Limit for splines given by fit points: their control points follow from a system of linear equations of that size."""
+"""Maximum number of fit points of a spline: its control points are the solution of a linear system of that size."""
 
 FLATNESS_TOLERANCE = 1e-6
-"""An entity counts as flat if its heights differ by less than this share of its extent."""
+"""Maximum difference of the heights of an entity, as a share of its extent, for which it counts as flat."""
 
 # Faults of a file are reported to the client by this module, not in the server's log.
 logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
@@ -55,7 +55,10 @@ class DxfReader:
         self.visited = self.pieces = 0
 
     def shows(self, entity: DXFEntity) -> bool:
-        """Whether an entity is to be seen, by its own layer; those on layer 0 of a block go by the block's."""
+        """Return whether an entity and its own layer are visible.
+
+        An entity on layer 0 of a block takes the layer of the insert, which :meth:`visit` checks.
+        """
         layer, invisible = _get_attribute(entity, "layer"), _get_attribute(entity, "invisible")
         return not invisible and str(layer).lower() not in self.hidden
 
@@ -117,22 +120,23 @@ def read_curves(content: bytes) -> Drawing:
 
     Raises
     ------
-    Malformed
-        The content is not DXF.
-    Unsuitable
-        The drawing exceeds the limits.
+    MalformedDrawing
+        If the content is not DXF.
+    UnsuitableDrawing
+        If the drawing exceeds the limits.
     """
     if b"\0" in content:
         raise MalformedDrawing("The drawing contains NUL characters, which text DXF never does.")
     if not content.rstrip().endswith(b"EOF"):
         raise MalformedDrawing("The drawing does not end with EOF; it may be truncated.")
-    # The recovery reader accepts files of sloppy writers; wrong numbers are refused below.
+    # The recovery reader also accepts files of programs that do not follow the format strictly. Unreadable numbers,
+    # which it replaces by guesses, are refused below.
     try:
         document, auditor = recover.read(io.BytesIO(content))
         entities = list(document.modelspace())
         layers = {layer.dxf.name.lower(): not (layer.is_off() or layer.is_frozen()) for layer in document.layers}
         unit = document.header.get("$INSUNITS", 0)
-    except Exception as error:  # a broken file brings the library to errors of any sort
+    except Exception as error:  # a broken file can cause any exception in the library
         raise MalformedDrawing(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
     _refuse_guesses(auditor)
     reader = DxfReader(layers)

@@ -1,4 +1,4 @@
-"""Detects the format of a drawing and converts its curves to the requested unit."""
+"""Detection of the format of a drawing, and conversion of its curves to the requested unit."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def read_drawing(content: bytes) -> Drawing | None:
     Raises
     ------
     DrawingError
-        The content is invalid in the format of its first bytes, or that format is not supported.
+        If the content is invalid in the format that its first bytes indicate, or that format is not supported.
     """
     if content.startswith(b"AutoCAD Binary DXF"):
         raise ForeignFormat("The body is a binary DXF file; save it as text (ASCII) DXF.")

@@ -1,4 +1,4 @@
-"""Open curves that meet at their ends are one outline: a rectangle of four lines, a slot of lines and arcs."""
+"""Joining of open curves that meet at their ends, such as a rectangle of four lines or a slot of lines and arcs."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ FREE_END, BRANCH_END = -1, -2
 
 @dataclass(frozen=True)
 class Chain:
-    """Open curves in a row, each starting where the previous one ends; if ``closed``, the first starts where the last
-    ends.
+    """A chain of open curves, each of which starts where the previous one ends.
 
-    ``branching``: it ends where more than two ends meet, or such a place keeps it from being closed.
+    If ``closed``, the first curve starts where the last one ends. ``branching`` means that the chain ends at a place
+    where more than two ends meet, or that such a place prevents it from being closed.
     """
 
     members: list[Curve]
@@ -64,11 +64,11 @@ def join_curves(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]
 
 
 def _find_partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
-    """Return for each end the number of the end that it meets, or FREE, or BRANCH."""
+    """Return for each end the number of the end that it meets, or ``FREE_END``, or ``BRANCH_END``."""
     if not curves:
         return np.empty(0, np.int64)
     places = np.array([place for one in curves for place in (one.start, one.end)])
-    # Of the nearest three one is the end itself; where all three are near, it is a branch.
+    # One of the three nearest ends is the end itself. If all three are near, the end is at a branch.
     looked = _select_up_to_three(places)
     pairs = np.stack([places[looked].real, places[looked].imag], axis=1)
     away, near = cKDTree(pairs).query(pairs, k=3, distance_upper_bound=reach * (1.0 + 1e-9))

@@ -1,4 +1,4 @@
-"""The data of an SVG path, read strictly and turned into cubic Béziers.
+"""Strict parser of SVG path data, which it converts to cubic Béziers.
 
 fontTools interprets the commands. It skips unknown characters, which would silently change the drawing; so the numbers
 are parsed here first, by the grammar of SVG 2 (section 9.3.9), and passed to it one by one.
@@ -82,9 +82,9 @@ def parse_subpaths(data: str) -> list[Subpath]:
     Raises
     ------
     ValueError
-        The data is invalid; the message gives the position.
-    Unsuitable
-        The path has more pieces than a drawing may have.
+        If the data is invalid; the message gives the position.
+    UnsuitableDrawing
+        If the path has more pieces than a drawing may have.
     """
     pen = _Pen()
     tokens = list(_parse_tokens(data))
@@ -142,11 +142,11 @@ def make_arc(start: complex, radii: complex, rotation: float, large: bool, sweep
         return complex(turned.real / rx, turned.imag / ry)
 
     half = to_unit_circle(0.5 * (start - end))
-    # Radii that do not reach are made larger by one factor.
+    # If the radii are too small for an ellipse through both points, SVG scales both by the same factor.
     grown = max(abs(half), 1.0)
     half /= grown
     across = 1j * half * np.sqrt(max(1.0 / abs(half) ** 2 - 1.0, 0.0))
-    # From the centre, on the unit circle.
+    # The centre of the arc, in coordinates in which the ellipse is the unit circle.
     centre = -across if large != sweep else across
     first, last = half - centre, -half - centre
     swept = float(np.angle(last / first))
@@ -164,7 +164,7 @@ def make_arc(start: complex, radii: complex, rotation: float, large: bool, sweep
 def make_unit_arc(start: float, swept: float) -> Complex:
     """Build an arc of the unit circle as cubics, shape (k, 4); angles in radians, ``swept`` of either sign."""
     count = max(int(np.ceil(abs(swept) / (2.0 * np.pi) * SEGMENTS_PER_TURN)), 1)
-    # The library goes counter-clockwise; the mirror image goes the other way.
+    # The library makes counter-clockwise arcs; a clockwise arc is the mirror image of one.
     way = 1.0 if swept >= 0.0 else -1.0
     found = cubic_bezier_arc_parameters(way * start, way * start + abs(swept), segments=count)
     cubics = np.array([[complex(point.x, way * point.y) for point in cubic] for cubic in found])

@@ -1,4 +1,4 @@
-"""Extracts the closed outlines from a drawing of any supported format."""
+"""Extraction of the closed outlines from a drawing of any supported format."""
 
 from __future__ import annotations
 
@@ -33,15 +33,16 @@ from service.outlines.limits import (
 from synthesis.model.json_object import JsonObject
 
 AREA_TOLERANCE = 1e-9
-"""Polygons with less than this share of the square of their extent have no area; same value as in problem statements.
+"""Minimum area of a polygon as a share of the square of its extent. A smaller area counts as zero, as in problem
+statements.
 """
 
 DUPLICATE_TOLERANCE = 1e-12
-"""Relative distance up to which consecutive points are merged: rounding separated them."""
+"""Relative distance up to which consecutive points are merged, because they differ only by rounding."""
 
 ROUNDNESS_TOLERANCE = 5e-4
-"""Largest deviation from a circle, as a share of its radius, of a closed curve that is read as one; four cubics satisfy
-it.
+"""Maximum deviation of a closed curve from a circle, as a share of the radius, for which it is read as a circle. The
+usual approximation by four cubics satisfies it.
 """
 
 
@@ -63,7 +64,7 @@ def read_outlines(
     Raises
     ------
     DrawingError
-        The drawing has no outlines; the subclass gives the reason.
+        If the drawing has no outlines; the subclass gives the reason.
     """
     # Overflow is detected in the results (`Curve.finite`), so warnings would be noise.
     with np.errstate(all="ignore"):
@@ -109,7 +110,7 @@ def _collect_outlines(drawing: Drawing, tolerance: float | None, length_unit: Dr
 def _find_closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, str]]]:
     """Return curves closed alone or by joining, in drawing order, and the sources of those that stay open."""
     closed = [[one] for one in curves if one.closed]
-    # Elements shorter than the reach lie in gaps between others.
+    # Elements shorter than the reach are left out, because they lie in gaps that joining closes.
     open_ = [one for one in curves if not one.closed and measure_extent([one]) > reach]
     chains, alone = join_curves(open_, reach)
     # Joined outlines take the place of their first element.

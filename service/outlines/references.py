@@ -1,6 +1,6 @@
-"""How many entities a DXF drawing has once its blocks are put where they are inserted: counted, not expanded.
+"""Number of entities of a DXF drawing after the insertion of its blocks, counted without expanding them.
 
-A drawing of some hundred bytes can insert a block in a block in a block, each of them a thousand times.
+The count must precede expansion: a drawing of some hundred bytes can nest blocks and insert each a thousand times.
 """
 
 from __future__ import annotations
@@ -17,19 +17,20 @@ Shown = Callable[[DXFEntity], bool]
 
 
 def require_countable(entities: Iterable[DXFEntity], shown: Shown) -> None:
-    """Refuse entities that are more than :data:`~service.outlines.limits.MAX_ELEMENTS` with those of their blocks.
+    """Refuse a drawing with too many entities, counting those of blocks at each insertion.
 
     Parameters
     ----------
-    entities : iterable of DXF entities
-        Of the model space.
+    entities : iterable of DXFEntity
+        Entities of the model space.
     shown : callable
-        Whether an entity is read; the block of an insert that is not is left alone.
+        Returns whether an entity is visible. The blocks of invisible inserts are not counted.
 
     Raises
     ------
-    Unsuitable
-        Also for blocks that lie too deep in one another, or in themselves.
+    UnsuitableDrawing
+        If there are more than :data:`~service.outlines.limits.MAX_ELEMENTS` entities, if blocks are nested too deeply,
+        or if a block contains itself.
     """
     if _Counter(shown).count(entities, 0) > MAX_ELEMENTS:
         raise UnsuitableDrawing(
@@ -38,13 +39,13 @@ def require_countable(entities: Iterable[DXFEntity], shown: Shown) -> None:
 
 
 def grid_of(insert: Insert) -> tuple[int, int]:
-    """Rows and columns in which an insert repeats its block."""
+    """Return the numbers of rows and columns in which an insert repeats its block."""
     rows, columns = (max(int(insert.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
     return rows, columns
 
 
 class _Counter:
-    """Counts each block once, however often it is inserted."""
+    """Counts entities. The count of each block is computed once, however often the block is inserted."""
 
     def __init__(self, shown: Shown) -> None:
         self._shown = shown
@@ -52,7 +53,7 @@ class _Counter:
         self._open: set[str] = set()
 
     def count(self, entities: Iterable[DXFEntity], depth: int) -> int:
-        """All entities, those of blocks as often as they are inserted."""
+        """Return the number of entities, counting those of blocks at each insertion."""
         total = 0
         for entity in entities:
             total += 1

@@ -21,10 +21,10 @@ SPLINE_TOLERANCE = 1e-6
 
 
 def convert_spline(degree: int, knots: Sequence[float], points: Complex, weights: Sequence[float]) -> Complex:
-    """Convert a B-spline to cubics with its points and tangents at their ends, shape (n, 4).
+    """Convert a B-spline to cubics that have its points and tangents at their ends, shape (n, 4).
 
-    Each span between knots takes as many as keep to the spline in their middles; splines of the third degree that are
-    not rational are met exactly.
+    The number of cubics per knot span is doubled until their midpoints lie within :data:`SPLINE_TOLERANCE` of the
+    spline. Non-rational splines of degree three are converted exactly.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def convert_spline(degree: int, knots: Sequence[float], points: Complex, weights
     Raises
     ------
     ValueError
-        The numbers do not define a spline, or it bends too sharply.
+        If the numbers do not define a spline, or if the spline needs more than :data:`MAX_CUBICS` cubics per span.
     """
     t, w = np.array(knots, float), np.array(weights, float)
     if not 1 <= degree <= MAX_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:

@@ -22,7 +22,7 @@ INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
 XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
 
 MILLIMETRES_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "Q": 0.25}
-"""Millimetres in an absolute unit. Pixels are omitted: they are the unit of drawings that have no physical size."""
+"""Millimetres per absolute unit. Pixels are omitted, because drawings in pixels have no physical size."""
 
 PIXELS_PER_UNIT = {"px": 1.0, "": 1.0, **{unit: length * 96.0 / 25.4 for unit, length in MILLIMETRES_PER_UNIT.items()}}
 """User units in each length unit."""
@@ -32,7 +32,7 @@ _NUMBER_LIST_PATTERN = re.compile(rf"[\s,]*+(?:{NUMBER_PATTERN}[\s,]*+)*+")
 _HIDDEN_PATTERN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
 
 _ALIGNMENT_SHARES = {"xMin": 0.0, "YMin": 0.0, "xMax": 1.0, "YMax": 1.0}
-"""Share of the free space before a view box, by the alignment keyword; centred (0.5) by default."""
+"""Share of the free space that lies before a view box, by alignment keyword; the default is 0.5 (centred)."""
 
 GROUP_ELEMENTS = {"svg", "g", "a", "switch"}
 INVISIBLE_ELEMENTS = {
@@ -140,10 +140,10 @@ def read_curves(content: bytes) -> Drawing:
 
     Raises
     ------
-    Malformed
-        The content is not SVG.
-    Unsuitable
-        The drawing exceeds the limits.
+    MalformedDrawing
+        If the content is not SVG.
+    UnsuitableDrawing
+        If the drawing exceeds the limits.
     """
     root = parse_xml(content)
     if root.name not in (f"{SVG_NAMESPACE} svg", "svg"):
@@ -157,8 +157,8 @@ def read_curves(content: bytes) -> Drawing:
 def _map_page(root: Node) -> tuple[Affine, float | None]:
     """Return the map from user units to the drawing, and the millimetres in a user unit (None if unknown).
 
-    The drawing keeps user units, and has its origin at the lower left corner of the page. Where the page is stretched
-    one way more than the other, the smaller stretch is the unit.
+    The drawing keeps user units, with the origin at the lower left corner of the page. If the page is stretched by
+    different factors in x and y, the smaller factor defines the unit.
     """
     width, height = (_parse_length(root.attributes.get(name, "")) for name in ("width", "height"))
     box = _parse_numbers(root.attributes.get("viewBox", ""), "its viewBox")

@@ -30,10 +30,10 @@ def parse_xml(content: bytes) -> Node:
 
     Raises
     ------
-    Malformed
-        The document is not well-formed, or declares entities.
-    Unsuitable
-        The document has too many elements, or nests them too deeply.
+    MalformedDrawing
+        If the document is not well-formed, or declares entities.
+    UnsuitableDrawing
+        If the document has too many elements, or nests them too deeply.
     """
     parser = expat.ParserCreate(namespace_separator=" ")
     # Without buffering, text arrives in arbitrary pieces.

@@ -1,8 +1,8 @@
 """Parts of a flywheel: the wheel on its keyed shaft between two plates.
 
-The wheel is one plate of the answer's thickness. A disc has a bore with a keyway, in contrast to the answer's solid
-disc; shaft and key fill it and rotate with it. A rim also has arms and a hub, in contrast to the answer's ring. The
-bill of materials has the mass of the wheel as made, and the README the difference from the answer's.
+The wheel is one plate of the answer's thickness. A disc has a bore with a keyway, whereas that of the answer is solid;
+shaft and key fill the bore and rotate with the disc. A rim also has arms and a hub, whereas that of the answer is a
+plain ring. The bill of materials has the mass of the wheel as made, and the README has the difference from the answer.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def make_flywheel_parts(design: FlywheelDesign, problem: FlywheelProblem, query:
     Raises
     ------
     NotMade
-        The shaft does not fit the wheel.
+        If the shaft does not fit the wheel.
     """
     sizing = GearSizing(query, problem.length_unit)
     wheel = design.mechanism

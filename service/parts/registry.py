@@ -154,7 +154,7 @@ def make_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> As
     Raises
     ------
     NotMade
-        The mechanism has no maker, the query has a field without meaning for it, or the parts do not fit.
+        If the mechanism has no maker, the query has a field without meaning for it, or the parts do not fit.
     """
     mechanism = design.mechanism
     maker = _get_maker(hasattr(mechanism, "skeleton"), mechanism.type)

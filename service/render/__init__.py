@@ -199,24 +199,25 @@ def export_design(design: AnyDesign, problem: ProblemBase, title: str, form: For
     ----------
     design : LinkageDesign or the design of another kind
         The design to draw; failed checks make no difference.
-    problem : StatedProblem
+    problem : ProblemBase
         The problem that the design solves.
     title : str
         Heading; free text, from which forbidden characters are removed.
-    form : {"svg", "gif", "dxf", "csv"} An SVG has a title and a description. It has no scripts, style sheets, element
-        ids or references, so that several can be embedded in one page.
+    form : {"svg", "gif", "dxf", "csv"}
+        File format. An SVG has a title and a description. It has no scripts, style sheets, element ids or references,
+        so that several can be embedded in one page.
 
     Returns
     -------
     str or bytes
-        Deterministic: the same arguments give the same file.
+        Content of the file. The same arguments give the same content.
 
     Raises
     ------
     NoSuchExport
         This type of mechanism has no file of this format.
     NotBuilt
-        The mechanism cannot be rebuilt from the design.
+        If the mechanism cannot be rebuilt from the design.
     """
     mechanism = design.mechanism.type
     if form not in list_forms(mechanism):

@@ -1,4 +1,4 @@
-"""A model as tables: every value of a statement or an answer with its name, unit and meaning.
+"""Tables of a model's values: every value of a problem or an answer with its name, unit and meaning.
 
 Glossary:
 

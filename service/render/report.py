@@ -46,7 +46,7 @@ _PAGE = _ENVIRONMENT.from_string(_FOLDER.joinpath("report.html").read_text(encod
 
 @dataclass(frozen=True)
 class ReportedJob:
-    """The reported job: data that its problem and result do not contain."""
+    """Data of the reported job that its problem and its result do not contain."""
 
     job: str
     kind: str
@@ -69,7 +69,7 @@ def _format_time(time: str) -> str:
 
 @dataclass(frozen=True)
 class CheckEntry:
-    """A check as words."""
+    """A check as text."""
 
     name: str
     passed: bool
@@ -79,8 +79,9 @@ class CheckEntry:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A design in full: its drawing, its assembly or the reason why it has none, its checks, and its numbers by
-    heading.
+    """A design that is shown in full: its drawing, assembly, checks and numbers.
+
+    Instead of the assembly it may have the reason why there is none. The numbers are grouped by headings.
     """
 
     number: int
@@ -102,7 +103,7 @@ def report(
     ----------
     problem, result
         The problem and its answer.
-    occasion : Occasion
+    occasion : ReportedJob
         The job.
     most : int
         Maximum number of designs that are shown in full, best first; the table lists all.
@@ -112,7 +113,7 @@ def report(
     Returns
     -------
     str
-        HTML. Deterministic: the same arguments give the same text.
+        The page as HTML. The same arguments give the same text.
     """
     units = list_symbols(problem)
     title = problem.model_config.get("title") or format_name(occasion.kind)

@@ -72,7 +72,7 @@ def warm() -> None:
     compilation = Compilation(list_parts, "warning", "text", priority=0, ahead=True)
     if not compilation.missing:
         return
-    dispatch.warm_up()  # what most parts need is compiled once, before it is needed everywhere
+    dispatch.warm_up()  # kernels that most parts call are compiled once, before the parts are compiled in parallel
     compilation.run()
     if missing := compilation.missing:
         raise WarmingFailure(f"not compiled: {', '.join(missing)}; the log has the reasons")

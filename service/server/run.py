@@ -1,4 +1,4 @@
-"""Run of the service: binds the port, starts all parts, and stops them in order."""
+"""Execution of the service: it binds the port, starts all parts, and stops them in order."""
 
 from __future__ import annotations
 

@@ -25,15 +25,16 @@ DEFAULT_RPM = 60.0
 
 
 class SimulatedMotion(NamedTuple):
-    """Inputs (radians or length units, shape (n + 1,)), and the signed speed along them."""
+    """Motion of the input: its positions (radians or length units, shape (n + 1,)), and its signed speed."""
 
     inputs: Real
     speed: float
 
 
 def get_dynamics(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) -> LoadedLinkage | None:
-    """Return the weights and loads of the links from the design's or else the problem's `dynamics`; None without
-    either.
+    """Return the masses and loads of the links from the block `dynamics` of the design, or else of the problem.
+
+    Return None if neither has this block.
     """
     # A design may have its own masses, for example counterweights added by balancing.
     own = getattr(design, "dynamics", None)
@@ -54,7 +55,7 @@ def plan_motion(
     Raises
     ------
     NotSimulated
-        The design has no motion, or the query gives a speed that does not fit its input.
+        If the design has no motion, or the query gives a speed that does not fit its input.
     """
     slides = mechanism.has_slide_input
     refuse_unused(

@@ -48,8 +48,8 @@ def write_simulation(design: AnyDesign, problem: ProblemBase, title: str, form: 
     Parameters
     ----------
     design : a design of any kind
-    problem : StatedProblem
-        The problem that it answers.
+    problem : ProblemBase
+        The problem that the design solves.
     title : str
         Free text.
     form : {"mjcf", "urdf", "mo", "sim.py"}
@@ -58,15 +58,15 @@ def write_simulation(design: AnyDesign, problem: ProblemBase, title: str, form: 
     Raises
     ------
     NoSimulation
-        The type of mechanism is not supported.
+        If the type of mechanism is not supported.
     NotSimulated
-        The design cannot be simulated.
+        If the design cannot be simulated.
     """
     return WRITERS[form](build_machine(design, problem, title, form, query))
 
 
 def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery) -> Multibody:
-    """Build the machine that is simulated; raises as :func:`write_simulation` does."""
+    """Build the machine that is simulated; the errors are those of :func:`write_simulation`."""
     machine = _build_unscaled(design, problem, title, form, query)
     # The other formats have no such limit.
     if form in ("mjcf", "sim.py") and _estimate_max_coordinate(machine) > MAX_COORDINATE:
@@ -91,7 +91,7 @@ def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: For
 
 
 def open_in_pmks(design: AnyDesign, problem: ProblemBase) -> PmksModel:
-    """Return the address at which PMKS+ opens a design; raises as :func:`write_simulation` does."""
+    """Return the address at which PMKS+ opens a design; the errors are those of :func:`write_simulation`."""
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(design.mechanism.type)
     speed_rpm = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)

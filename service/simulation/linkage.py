@@ -71,7 +71,7 @@ def build_linkage(
     Raises
     ------
     NotSimulated
-        The mechanism cannot be assembled at some of the inputs.
+        If the mechanism cannot be assembled at some of the inputs.
     """
     # Order 1: the joint rates at the start are needed, too.
     driven = drive(mechanism, inputs, speed=speed, order=1)
@@ -155,7 +155,8 @@ class _Tree:
                 owner = self._nodes[self._links[slide.link]]
                 block = next(other for other in self._nodes.values() if other.slide == number)
                 if owner is node and block.name not in reached:
-                    # The block moves in its link: its coordinate is the slide's. Below, the link moves on its block.
+                    # The block moves in its link, and its joint coordinate is that of the slide. In the other case
+                    # below, the link moves on its block.
                     block.carried = 1
                     attach(block, owner.name, "slide", slide.joint, number)
                 elif block is node and owner.name not in reached:
@@ -186,8 +187,9 @@ class _Tree:
         return place.real, place.imag, 0.0
 
     def _measure_turn(self, link: str) -> complex:
-        """Return the rotation of a link from the reference position to the start of the motion, as a unit complex
-        number.
+        """Return the rotation of a link from the reference position to the start of the motion.
+
+        The rotation is a unit complex number.
         """
         if link == GROUND:
             return 1.0 + 0.0j
@@ -267,8 +269,9 @@ class _Tree:
         )
 
     def _make_relation(self, number: int) -> Relation:
-        """Return the constraint of a gear pair: angle of the second link minus ratio times that of the first, both to
-        ground.
+        """Return the constraint of a gear pair.
+
+        The angle of the second link minus the ratio times that of the first is constant, both relative to the ground.
         """
         gear = self._mechanism.gears[number]
         terms: dict[str, float] = {}

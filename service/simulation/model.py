@@ -1,4 +1,4 @@
-"""The simulated machine: bodies on hinges and slides, closures of loops, and the analysed motion for comparison.
+"""Model of the simulated machine: bodies on hinges and slides, closures of loops, and the analysed motion to compare.
 
 Glossary, in SI units (metres, kilograms, radians, seconds), at the *start* of the motion:
 
@@ -53,7 +53,8 @@ class Body:
     marks : tuple of (x, y, z)
         Positions of its joints; bars are drawn between them.
     radius, width : float
-        Of the picture: of a disc if the radius is positive, else half the thickness of the bars.
+        Dimensions of the body's picture: those of a disc if the radius is positive. Otherwise the body is drawn as
+        bars, and ``width`` is half their thickness.
     """
 
     name: str
@@ -148,7 +149,10 @@ class Multibody:
 
     @property
     def lead(self) -> float:
-        """Inertia (mass) of the flywheel (carriage) that leads the drive; its speed changes by at most a billionth."""
+        """Inertia of the flywheel, or mass of the carriage, that leads the drive.
+
+        It is so large that the speed of the lead changes by at most a billionth.
+        """
         # Energy scale of gravity per unit mass.
         weight = float(np.linalg.norm(self.gravity)) * self.size
         heaviest = max(body.mass for body in self.bodies)

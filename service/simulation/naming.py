@@ -13,10 +13,10 @@ class Names:
         self._given: set[str] = set()
 
     def make_name(self, sort: str, label: str) -> str:
-        """Return a unique identifier for ``label``. It begins with its sort, so that it is no keyword of a language.
+        """Return a unique identifier for ``label``.
 
-        It has no two underscores in a row, so that an identifier extended by two underscores and a suffix is unique,
-        too.
+        It begins with ``sort``, so that it is not a keyword of any language. It never has two underscores in a row, so
+        that an identifier extended by two underscores and a suffix is unique, too.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""The address at which PMKS+ opens a linkage; the query contains the model.
+"""Export of a linkage to PMKS+ as an address, whose query contains the model.
 
 PMKS+ (Worcester Polytechnic Institute, https://app.pmksplus.com) writes a model as sections separated by points:
 settings, joints, links, forces, the selection, and a character that encodes the total length; see
@@ -24,14 +24,14 @@ BASE_URL = "https://app.pmksplus.com/?"
 
 BASE64_DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
 LENGTH_DIGITS = BASE64_DIGITS[:62]
-"""Digits to base 62; the last character of a model is its length modulo 62."""
+"""Digits of base 62. The last character of a model encodes its length modulo 62."""
 
 JOINT_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 THOUSANDTHS = 1000
 MAX_MODEL_SIZE = 50.0
-"""Upper limit for the size of a model in PMKS+'s units; the lower limit is a tenth. Thousandths are then at most
-1/5000.
+"""Maximum size of a model in PMKS+'s units. The minimum is a tenth of it, so that a thousandth of a unit is at most
+1/5000 of the model's size.
 """
 
 SLOT_HALF_LENGTH = 2.5
@@ -65,7 +65,7 @@ def write_pmks(mechanism: Mechanism, rpm: float) -> PmksModel:
     Raises
     ------
     NotSimulated
-        The mechanism has gears, more joints than there are letters, or links with equal names.
+        If the mechanism has gears, more joints than there are letters, or links with equal names.
     """
     if mechanism.gears:
         raise NotSimulated("PMKS+ does not support gears.")
@@ -152,8 +152,9 @@ class _Writer:
         )
 
     def _add_slot(self, slide: Slide) -> tuple[str, ...]:
-        """Add two points of a slot in a moving link as joints of that link; return an empty tuple for slots in the
-        ground.
+        """Add two points of a slot in a moving link as joints of that link, and return their letters.
+
+        A slot in the ground needs no such points: the result is empty.
         """
         if slide.link == GROUND:
             return ()

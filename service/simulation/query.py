@@ -82,12 +82,12 @@ class NoSimulation(LookupError):
 
 
 def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
-    """Refuse fields that have no meaning for a mechanism.
+    """Refuse fields of a query that have no meaning for a mechanism.
 
     Raises
     ------
     NotSimulated
-        A field is given.
+        If one of the fields is given.
     """
     for field in fields:
         if getattr(query, field) is not None:
@@ -95,12 +95,12 @@ def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
 
 
 def check_nonzero(value: float | None, field: str) -> float | None:
-    """Return a speed, if it is not 0.
+    """Return a speed after checking that it is not 0; None stays None.
 
     Raises
     ------
     NotSimulated
-        The speed is 0, or below the minimum in size.
+        If the speed is 0, or its magnitude is below the minimum.
     """
     if value is not None and abs(value) < MIN_VALUE:
         raise NotSimulated(f"A simulation needs a speed of at least {MIN_VALUE:g} in size.", f"/query/{field}")

@@ -111,7 +111,10 @@ class _Train:
             one.width = one.width or width
 
     def add_mesh(self, *terms: tuple[str, float]) -> None:
-        """Couple shafts: the weighted sum of their angles stays 0. A relation that follows from others is left out."""
+        """Couple shafts such that the weighted sum of their angles stays 0.
+
+        A relation that follows from earlier ones is left out.
+        """
         known = list(self.shafts)
         kept: dict[str, float] = {}
         for name, weight in terms:
@@ -243,8 +246,9 @@ def _add_planetary(
     train: _Train, mechanism: PlanetaryMechanism, metrics: PlanetaryMetrics, prefix: str, share: float, axis: complex,
     joined: Mapping[str, str],
 ) -> dict[str, str]:  # fmt: skip
-    """Add the bodies of a planetary train about an axis; return their names by member. ``joined`` maps members to
-    existing bodies.
+    """Add the bodies of a planetary train about an axis, and return their names by member.
+
+    ``joined`` maps members to existing bodies of another train.
     """
     arrangement, speeds = ARRANGEMENTS[mechanism.arrangement], metrics.speeds
     placed = place_planetary_gears(mechanism)

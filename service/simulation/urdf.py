@@ -1,4 +1,4 @@
-"""The URDF of a machine.
+"""The model of a machine in URDF.
 
 URDF describes trees only. Its root is called :data:`ROOT_LINK`, the name that readers fix to the ground: Gazebo takes a
 root of another name for a moving body, and drops it with everything attached if it has no mass. The tree is written

@@ -48,17 +48,17 @@ def compute_weights(
     ----------
     mechanism : Mechanism
         In length units.
-    block : WeighedLinkage or None
-        Masses of this mechanism's links in the problem.
-    layout : LayoutSizes or None
-        Sizes in the problem.
+    block : LoadedLinkage or None
+        Masses of this mechanism's links.
+    layout : object
+        Sizes of the links in the problem, or None.
     unit : str
         Length unit.
 
     Raises
     ------
     NotSimulated
-        The block has its own units, or does not fit the mechanism.
+        If the block has its own units, or does not fit the mechanism.
     """
     scale = METRES_PER_UNIT[unit] * query.built
     width, thickness = _get_sizes(mechanism, layout, METRES_PER_UNIT[unit], query)

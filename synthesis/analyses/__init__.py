@@ -1,7 +1,7 @@
-"""Analyses of given mechanisms for clients: a request and its answer, by mechanism family.
+"""Analyses of given mechanisms, each with a request and an answer, by family of mechanisms.
 
-A family is a module with the models of its request and answer. It is chosen by the mechanism's type, so that errors in
-a request refer to the fields of its family.
+Each family is a module with the models of its request and its answer. The type of a mechanism determines its family, so
+that errors in a request refer to the fields of that family.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ FAMILIES: dict[str, Family] = {
     )
     for name in list_mechanism_types(family.request)
 }
-"""Families by mechanism type, without linkages; every type that is not listed is a linkage."""
+"""Families by type of mechanism, except linkages: every type that is not listed is a linkage."""
 
 
 def get_family(mechanism: object) -> Family:
-    """Return the family of a mechanism in JSON form; that of linkages if it is unclear."""
+    """Return the family of a mechanism in JSON form; the family of linkages if the type is unknown or missing."""
     kind = mechanism.get("type") if isinstance(mechanism, dict) else None
     # Even invalid requests need a family, whose model then reports the error.
     return FAMILIES.get(kind, linkage.FAMILY) if isinstance(kind, str) else linkage.FAMILY
@@ -59,7 +59,7 @@ def parse_request(body: object) -> AnalysisRequest:
     Raises
     ------
     pydantic.ValidationError
-        For a body without a mechanism and its motion.
+        For an ill-formed request.
     """
     return get_family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
 

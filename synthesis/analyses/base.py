@@ -1,4 +1,7 @@
-"""Base of the analyses of all families of mechanisms: a request that checks and answers itself, and its answer."""
+"""Base classes of the analyses of all families of mechanisms.
+
+A request is a model that finds its own errors and builds its answer.
+"""
 
 from __future__ import annotations
 
@@ -17,23 +20,25 @@ class AnalysisRequest(Statement, ABC):
     """A mechanism and how it is driven; each family has its own fields."""
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows: (JSON pointer, detail)."""
+        """Return errors that the validation of single fields cannot find, as pairs (JSON pointer, detail)."""
         return []
 
     @abstractmethod
     def build_answer(self) -> JsonObject:
-        """Build the answer to a valid request, as plain lists and numbers in the form of the family's model.
+        """Build the answer to a valid request, as plain lists and numbers in the form of the family's answer model.
 
         Raises
         ------
         MechanismError
-            For a mechanism that does not exist.
+            For a mechanism that cannot exist.
         """
 
     @classmethod
     def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
-        """Build the answer for a design's mechanism (in JSON form) over its cycle, a full turn of the input at speed
-        1."""
+        """Build the answer for the mechanism of a design, in JSON form, over its cycle.
+
+        The cycle is a full turn of the input at speed 1, in ``steps`` steps.
+        """
         return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).build_answer()
 
     @classmethod
@@ -52,7 +57,7 @@ class DrivenRequest(AnalysisRequest, Generic[Given]):
     motion: StatedMotion = Sweep()
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List the errors of the motion."""
+        """Return the errors of the motion."""
         return self.motion.find_errors()
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 MAX_VALUES = 2_000_000
-"""Maximum count of numbers in an answer's lists: some forty megabytes of JSON."""
+"""Maximum count of numbers in the lists of an answer: about forty megabytes of JSON."""
 
 
 class BudgetError(ValueError):
-    """Raised for a request that exceeds the limit; carries the field's path and the largest permitted value."""
+    """Raised for a request that exceeds the limit; carries the path of the field, and the permitted maximum."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -16,18 +16,21 @@ class BudgetError(ValueError):
 
 
 def require_values(path: str, positions: int, numbers: int) -> None:
-    """Refuse ``numbers`` values at each of several positions if they exceed :data:`MAX_VALUES` in total.
+    """Refuse an answer with more than :data:`MAX_VALUES` numbers.
 
     Parameters
     ----------
     path : str
         Path of the field that determines the number of positions.
+    positions, numbers : int
+        Number of positions, and count of numbers at each of them.
 
     Raises
     ------
     BudgetError
+        If the product exceeds the limit.
     """
     if positions * numbers > MAX_VALUES:
-        # Tell the client the limit in positions, the quantity that the request can change.
+        # Report the limit in positions, because the request determines their number.
         most = MAX_VALUES // numbers
         raise BudgetError(path, f"at most {most} positions, each of which has {numbers} numbers here, got {positions}")

@@ -15,7 +15,7 @@ from synthesis.model.problem import Number, Sizable, Statement
 __all__ = ["FULL_TURN", "MAX_POSITIONS", "RAD_PER_S", "OnePosition", "StatedMotion", "Sweep", "TimeSpan", "TimedRun"]
 
 ROUNDING = 1e-12
-"""Share of a number of steps by which it may fall short of an integer: 0.3/0.1 is three steps."""
+"""Share by which a number of steps may fall short of an integer: by rounding 0.3/0.1 is slightly below 3."""
 
 
 class OnePosition(DriveSpeed):
@@ -24,7 +24,7 @@ class OnePosition(DriveSpeed):
     at: Number = Field(description="Input angle, degrees.")
 
     def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
-        """Return input, speed and no time."""
+        """Return the input and its speed, each of shape (1,), and None, because the time is unknown."""
         return np.array([self.at]), np.array([self.rate]), None
 
 
@@ -45,7 +45,7 @@ class TimedRun(DriveSpeed):
     def find_errors(self) -> list[tuple[str, str]]:
         """List errors of the run, backwards or with too many positions, in addition to those of every motion."""
         faults, span = super().find_errors(), self.time
-        # A run backwards would have no positions, so its number is not checked.
+        # A run backwards has no positions, so their number is not checked.
         if span.end < span.start:
             faults.append(("/motion/time/end", "the end must not lie before the start"))
         elif (span.end - span.start) / span.step > MAX_POSITIONS - 1:
@@ -58,7 +58,7 @@ class TimedRun(DriveSpeed):
         # At least the start, even if rounding makes the number of steps negative.
         t = np.asarray(self.time.start + self.time.step * np.arange(max(count, 1)), np.float64)
         turned = self.rate * t + 0.5 * self.acceleration * t * t
-        # Rates are in radians, but the answer's angles in degrees.
+        # Speeds are in radians, but input angles are in degrees.
         moved = turned if slide else np.degrees(turned)
         return np.asarray(self.at + moved), np.asarray(self.rate + self.acceleration * t), t
 

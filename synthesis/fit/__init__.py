@@ -1,2 +1,1 @@
-"""Parts that all fits of a linkage share: the chart of its dimensions, the curve it traces, and constraints as
-margins."""
+"""Modules shared by all fits of a linkage: the chart of its dimensions, the curve it traces, constraints as margins."""

@@ -1,7 +1,7 @@
 """Charts of linkages: unknowns x for which a family's property holds at all x, without bounds or penalties.
 
-A linkage is a row of unknowns x, scaled to the task. The first two are O2, the last two P's coordinates in the
-coupler's frame (origin at A, real axis towards the coupler's other pin).
+A linkage is a row of unknowns x, scaled to the task. The first two are the coordinates of O2, the last two those of P
+in the coupler's frame (origin at A, real axis towards the coupler's other pin).
 
 =============== ======================================= ============================================================
 family          unknowns                                 lengths
@@ -19,7 +19,8 @@ geared fivebar  O2, O5, u₁…u₄, Φ, P                      input, coupler 1
 =============== ======================================= ============================================================
 
 γ is the direction of the ground line, σ of the slide. With S shortest and L longest, one of the sₖ is P + Q − L − S for
-the remaining two links P and Q: the fourbar is Grashof for all positive s, and no descent can leave its class.
+the remaining two links P and Q: the fourbar satisfies Grashof's condition for all positive s, and no descent can leave
+its class.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ OPTIONS: KernelOptions = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiler options of the fits' kernels: division by zero raises no exception, since results are checked for NaN."""
 
 DOUBLE_CRANK, CRANK_ROCKER, DOUBLE_ROCKER, FOURBAR, SLIDER_CRANK, SLIDER_ROCKER, GEARED_FIVEBAR = range(7)
-"""Families of linkages. Below :data:`FOURBAR` it is also the number of the shortest link, in the order d, a, b, c."""
+"""Families of linkages. A number below :data:`FOURBAR` is also that of the shortest link, in the order d, a, b, c."""
 
 UNKNOWNS = {
     DOUBLE_CRANK: 9,
@@ -50,12 +51,12 @@ LENGTHS, POINT = 3, 7
 """Indices of the first length number and of P's coordinates in the x of a fourbar."""
 
 MIN_LOG, MAX_LOG = -16.0, 16.0
-"""Limits of the logarithms of lengths, in task sizes: far outside any linkage, but safe for rounding."""
+"""Limits of the logarithms of lengths in task sizes: far beyond any useful linkage, but harmless for rounding."""
 
 
 @njit(**OPTIONS)
 def compute_lengths(family: int, x: Real, lengths: Real, slopes: Real) -> None:
-    """Compute the linkage's lengths, and their derivatives by the numbers u as a square matrix.
+    """Compute a linkage's lengths, and their derivatives by the unknowns u as a square matrix.
 
     Fourbars: d, a, b, c. Slider-cranks: a, b, offset. Geared fivebars: input, coupler 1, coupler 2, output.
     """
@@ -103,10 +104,10 @@ def _list_other_links(shortest: int) -> tuple[int, int]:
 
 @njit(**OPTIONS)
 def write_unknowns(lengths: Real, family: int, edge: float, x: Real) -> bool:
-    """Write the numbers of a fourbar's lengths into x; return False if the linkage is not of its family.
+    """Write the unknowns u of a fourbar's lengths into x; return False if the linkage is not of the given family.
 
-    ``edge`` is the minimum s, as a share of all links together: a linkage nearer to a change point, or beyond it, is
-    moved there. With 0, linkages outside the family are refused.
+    ``edge`` is the minimum s, as a share of the sum of all lengths. A linkage nearer to a change point than that, or
+    beyond it, is moved to the minimum. With an ``edge`` of 0, linkages outside the family are refused.
     """
     if family == FOURBAR:
         for k in range(4):

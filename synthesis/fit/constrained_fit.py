@@ -14,20 +14,20 @@ from synthesis.numerics.levenberg import Rows
 from synthesis.numerics.status import Status
 
 WORKSPACE_TOLERANCE = 0.5 * AIM_SHARE
-"""Violation of a workspace, in task sizes, that counts as none, because fits aim beyond the checked limits."""
+"""Violation of a workspace, in task sizes, that is tolerated, because fits aim beyond the checked limits."""
 
 
 class RowCounts(NamedTuple):
-    """Numbers of rows of a fit.
+    """Numbers of rows in the residuals of a fit.
 
     Attributes
     ----------
     most : int
         Maximum number of all rows.
     limits, equations : int
-        Number of limits, and how many of them, the last, are equations.
+        Number of limits, and of equations among them, which come last.
     in_workspace : int
-        Number of the limits, the first ones, that are margins of a workspace.
+        Number of limits that are margins of a workspace, which come first.
     """
 
     most: int

@@ -47,8 +47,8 @@ SETTING = ArrayLayout(
     given_pivots=4,
     moving_box=4,
 )
-"""Setting of a fit: a linkage's type and its constraints. Infinite without a constraint; 0 for a minimum length or
-share."""
+"""Layout of a fit's setting: a linkage's type and its constraints. An absent constraint is infinite, an absent minimum
+length or share is 0."""
 
 FAMILY_INDEX, SIGN_INDEX = SETTING.index("family"), SETTING.index("sign")
 """The chart's family, and the assembly sign."""
@@ -60,7 +60,7 @@ LINKS, RATIO = SETTING.slice("links"), SETTING.index("ratio")
 """Minimum and maximum length of a link, and maximum link ratio."""
 
 INPUT_BOX, OUTPUT_BOX = SETTING.slice("input_box"), SETTING.slice("output_box")
-"""Boxes (x from, to, y from, to) of O2 and of O4."""
+"""Boxes of O2 and of O4, each as minimum x, maximum x, minimum y, maximum y."""
 
 BOXES = SETTING.slice("input_box", "output_box")
 """Both of these boxes."""
@@ -103,9 +103,9 @@ def compute_margins(
     Parameters
     ----------
     x : float64, shape (n,)
-        Unknowns of the chart, 9, followed by other unknowns of the fit.
+        The 9 unknowns of the chart, followed by other unknowns of the fit.
     lengths, slopes : float64, shapes (4,) and (4, 4)
-        Of :func:`synthesis.fit.chart.compute_lengths`.
+        Lengths and their derivatives by :func:`synthesis.fit.chart.compute_lengths`.
     ends : float64, shape (2,)
         Crank angles from the ground line at the ends of the used range. Transmission margins treat them as fixed.
     turn : float64, shape (n,)
@@ -113,9 +113,9 @@ def compute_margins(
     setting : float64, shape (SETTING_SIZE or more,)
         See :data:`SETTING`.
     values, gradients : float64, shapes (LIMIT_COUNT,) and (LIMIT_COUNT, n)
-        Written; gradients only where the value is finite.
+        Output; gradients are written only where the value is finite.
     """
-    # Infinite means "not requested": such a margin never bears a load, so its gradient is left unwritten.
+    # Infinite means "not requested": such a margin never bears a load, so its gradient is not written.
     values[:] = np.inf
     first = _write_length_margins(lengths, slopes, setting, values, gradients, 0)
     first = _write_ratio_margins(lengths, slopes, setting, values, gradients, first)
@@ -123,7 +123,7 @@ def compute_margins(
     first = _write_coupler_point_margins(x, setting, values, gradients, first)
     first = _write_moving_pivot_margins(x, lengths, slopes, ends[0], turn, setting, values, gradients, first)
     first = _write_transmission_margins(lengths, slopes, ends, setting, values, gradients, first)
-    # Grashof classes alone: their chart keeps s > 0 by itself, and this margin keeps s away from 0, the change point.
+    # Only for Grashof classes: their chart itself keeps s > 0, and this margin keeps s away from 0, the change point.
     if setting[FAMILY_INDEX] < FOURBAR and setting[CHANGE_POINT] > 0.0:
         around = lengths.sum()
         for k in range(3):
@@ -139,8 +139,10 @@ def compute_margins(
 def _write_length_margins(
     lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int
 ) -> int:
-    """Write the logarithmic margins of all links from both length limits, starting at margin ``number``; return the
-    next number."""
+    """Write the logarithmic margins of all links from both length limits, from margin ``number`` on.
+
+    Return the number of the next margin.
+    """
     for i in range(4):
         for side in range(2):
             limit = setting[LINKS][side]
@@ -181,8 +183,8 @@ def _write_ratio_margins(lengths: Real, slopes: Real, setting: Real, values: Rea
 def _write_pivot_margins(
     x: Real, lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int
 ) -> int:
-    """Write the distances from the sides of the boxes of O2 and O4, and, as the last margins of all, their given
-    coordinates."""
+    """Write the distances of O2 and O4 from the sides of their boxes and, as the last margins of all, from their given
+    coordinates; return the number of the next margin."""
     for pivot in range(2):
         for axis in range(2):
             for side in range(2):
@@ -194,7 +196,7 @@ def _write_pivot_margins(
                 number += 1
             given = setting[GIVEN_PIVOTS][2 * pivot + axis]
             if not math.isnan(given):
-                # Equations stand behind all inequalities, where the augmented Lagrangian expects them.
+                # Equations come after all inequalities, where the augmented Lagrangian expects them.
                 at = LIMIT_COUNT - EQUATION_COUNT + 2 * pivot + axis
                 values[at] = _compute_coordinate(x, lengths, slopes, pivot, axis, 1.0, gradients[at]) - given
     return number
@@ -202,8 +204,7 @@ def _write_pivot_margins(
 
 @njit(**OPTIONS)
 def _compute_coordinate(x: Real, lengths: Real, slopes: Real, pivot: int, axis: int, toward: float, row: Real) -> float:
-    """Compute a coordinate of O2 (pivot 0) or O4 (1), and write its derivatives, times the sign ``toward``, into
-    ``row``."""
+    """Return a coordinate of O2 (pivot 0) or O4 (1), and write its derivatives times the sign ``toward`` to ``row``."""
     row[:] = 0.0
     row[axis] = toward
     place: float = x[axis]
@@ -285,8 +286,10 @@ def _write_moving_pivot_margins(
 def _write_transmission_margins(
     lengths: Real, slopes: Real, ends: Real, setting: Real, values: Real, gradients: Real, number: int
 ) -> int:
-    """Write the margins of cos γ at φ = 0, φ = π and both ends of the range, from above and below; return the next
-    number."""
+    """Write the margins of cos γ at φ = 0, φ = π and both ends of the range, from above and below.
+
+    Return the number of the next margin.
+    """
     if setting[COSINE] == np.inf:
         return number + 8
     d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]

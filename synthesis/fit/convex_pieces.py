@@ -21,23 +21,23 @@ MAX_EXACT_CORNERS = 12
 COARSENING_FACTOR = 3.0
 """Factor by which the tolerance of simplification grows while an outline has too many pieces."""
 
-# Beyond this share an outline keeps no detail that its convex hull would lose.
 HULL = 0.3
-"""Tolerance of simplification, as a share of the extent, beyond which the convex hull is used."""
+"""Tolerance of simplification, as a share of the extent, beyond which the convex hull is used: an outline simplified
+that much keeps no detail that its hull would lose."""
 
 STRAIGHTNESS_TOLERANCE = 1e-12
 """Sine of an inward bend that is attributed to rounding."""
 
 
 def decompose_convex(corners: Complex, size: float, most: int | None = None) -> tuple[list[Complex], float]:
-    """Cover an outline by anticlockwise convex polygons; return them and how far the outline may extend beyond them.
+    """Cover an outline by anticlockwise convex polygons; return these and how far the outline may extend beyond them.
 
     Parameters
     ----------
     corners : complex, shape (k,)
-        Of a simple polygon; a point, or two points, is a piece by itself.
+        Corners of a simple polygon. One or two points are a piece by themselves.
     size : float
-        Of the task, in the unit of the corners.
+        Size of the task, in the unit of the corners.
     most : int, optional
         Maximum number of pieces: an outline with more is simplified further, in the end to its convex hull.
     """
@@ -75,7 +75,7 @@ def _orient_anticlockwise(corners: Complex) -> Complex:
 
 
 def _measure_bends(corners: Complex) -> NDArray[np.float64]:
-    """Return a number for every corner of an anticlockwise outline, negative if it bends inward; shape (k,)."""
+    """Return a measure of the bend at every corner of an anticlockwise outline, negative if inward; shape (k,)."""
     ahead = np.roll(corners, -1) - corners
     behind = np.roll(ahead, 1)
     return np.asarray((behind.conj() * ahead).imag + STRAIGHTNESS_TOLERANCE * np.abs(behind * ahead))
@@ -100,7 +100,7 @@ def _merge_pieces(pieces: list[Complex]) -> list[Complex]:
         if n is None or beside is None:
             continue
         first, second = polygons[n], polygons[beside]
-        # From the end of the diagonal round the first to its start, and on round the second.
+        # From the end of the diagonal around the first piece to its start, and on around the second piece.
         at, there = first.index(end), second.index(start)
         whole = [*first[at:], *first[:at], *[*second[there:], *second[:there]][1:-1]]
         if not _is_convex(np.array(whole)):

@@ -35,7 +35,8 @@ def compute_unit_vector(angle: float) -> complex:
 def scale_complex(z: complex, factor: float) -> complex:
     """Return z times a real factor.
 
-    A complex product would also multiply by the zero imaginary part, which a compiler bound to IEEE 754 cannot omit."""
+    A complex product would also multiply by the zero imaginary part, which a compiler bound to IEEE 754 cannot omit.
+    """
     return complex(factor * z.real, factor * z.imag)
 
 
@@ -69,8 +70,10 @@ def close_two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool
 def _solve_coupler(
     family: int, x: Real, lengths: Real, sign: float, crank: complex, second: complex
 ) -> tuple[bool, complex, complex]:
-    """Return whether the loop closes, P, and the coupler's unit vector, given those of the crank and of the second
-    angle."""
+    """Return whether the loop closes, P, and the coupler's unit vector.
+
+    ``crank`` and ``second`` are the unit vectors of the crank and of the second angle.
+    """
     o2 = complex(x[0], x[1])
     if family <= FOURBAR:
         pin = scale_complex(crank, lengths[1])
@@ -104,8 +107,7 @@ def place_linkage(
 def trace_points(
     family: int, x: Real, lengths: Real, sign: float, ratio: float, theta: Real, places: Complex, along: Complex
 ) -> bool:
-    """Write P and the coupler's unit vector with the crank at several angles; return False if any is beyond a
-    toggle."""
+    """Write P and the coupler's unit vector at several crank angles; return False if one of them is beyond a toggle."""
     closes = True
     for k in range(len(theta)):
         here, places[k], along[k] = place_linkage(family, x, lengths, sign, ratio, theta[k])
@@ -239,8 +241,10 @@ def place_with_slopes(
     theta: float,
     slopes: Complex,
 ) -> tuple[bool, complex]:
-    """Return whether the linkage closes, and P; write P's derivatives by the unknowns and, last, θ into ``slopes`` (m +
-    1)."""
+    """Return whether the linkage closes, and P; write P's derivatives into ``slopes``, shape (m + 1,).
+
+    They are by the m unknowns and, last, by θ.
+    """
     crank, second = compute_unit_vector(theta), compute_unit_vector(compute_second_angle(family, x, ratio, theta))
     closes, z, along = _solve_coupler(family, x, lengths, sign, crank, second)
     if not closes:
@@ -272,7 +276,9 @@ def sweep_curves(
     theta: Real,
     good: NDArray[np.bool_],
 ) -> None:
-    """Compute P and θ over equal steps of the crank, shape (n, steps), from begin to end; mark linkages that jam.
+    """Compute P and θ over equal steps of the crank, shape (n, steps), from begin to end.
+
+    ``good`` receives whether each linkage closes at all of them.
 
     If the range is a ring, its end coincides with its beginning and is left out.
     """

@@ -2,11 +2,11 @@
 
 The forces follow from the closed form (:mod:`kinematics.dynamics.fourbar`) at equal steps of the crank: over a full
 turn of a crank, else from the first point to the last. In each of :data:`WINDOW_COUNT` windows of the motion the peak F
-of each limited force has a margin, ln(limit / F), so that a fit sees every peak of a force curve and not the highest
-alone. The derivatives are finite differences, because the weights of the links depend on the unknowns, too. One whole
-linkage takes some microseconds.
+of each limited force has a margin, ln(limit / F), so that a fit sees every peak of a force curve and not only the
+highest one. The derivatives are finite differences, because the weights of the links depend on the unknowns, too. The
+evaluation of one linkage takes a few microseconds.
 
-The numbers follow those of a workspace (:mod:`synthesis.fit.workspace`), of which these margins are the last.
+The packed limits follow those of a workspace (:mod:`synthesis.fit.workspace`), of which these margins are the last.
 """
 
 from __future__ import annotations
@@ -38,31 +38,31 @@ from synthesis.fit.fourbar_loads import (
 from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity, LengthUnit
 
 WINDOW_COUNT, POSITION_COUNT = 12, 145
-"""Windows of the motion, and positions in all of them together, both ends included."""
+"""Number of windows of the motion, and of positions in all of them together, both ends included."""
 
 AIM_SHARE = 0.005
 """Share by which forces are kept below their limits: peaks lie between the positions."""
 
 MAX_MARGIN = 1.0
-"""Maximum margin: larger ones are cut off, because a force of a third of its limit does not matter."""
+"""Maximum margin. Larger ones are cut off, because a force below a third of its limit does not matter."""
 
 DIFFERENCE_STEP = 1e-6
-"""Step of the derivatives: of angles, logarithms of lengths and places in task sizes."""
+"""Step of the finite differences, in angles, logarithms of lengths, and places in task sizes."""
 
 SIZE, LIMITS_INDEX, INDEX, STRENGTH, COUPLE, BLOCK = 0, 1, 5, 6, 7, 8
-"""Indices of the numbers: the task's size in the unit of the forces, limits of the first four peaks, of the joint force
-index, the strength of the load to which this refers and the link if it is a torque (-1 if not), and where the block
-begins. Infinite without a limit."""
+"""Indices of the packed limits: the task's size in the length unit of the forces, the limits of the first four peaks,
+the limit of the joint force index, the strength of the load to which that index refers, the link of this load if it is
+a torque (otherwise −1), and the beginning of the block of loads. An absent limit is infinite."""
 
-# Drive torque, joint force, shaking force, shaking moment and joint force index.
 QUANTITIES = 5
+"""Number of limited quantities: drive torque, joint force, shaking force, shaking moment and joint force index."""
 
 ARGUMENT_COUNT = 11
 """Number of arguments of the forces: the nine numbers of the chart, and the crank angles at the first and last
 point."""
 
 NO_FORCE_LIMITS = np.zeros(0)
-"""Empty limits."""
+"""Packed limits of a task without limits on forces."""
 
 
 def pack_forces(
@@ -79,11 +79,11 @@ def pack_forces(
     dynamics : DesignDynamics or None
         Masses and loads of every design.
     limits : mapping of str to float
-        By the names of the forces.
+        Limits by the names of the forces.
     unit : str
         The length unit.
     origin, size : complex and float
-        Of the task, in length units.
+        Origin and size of the task, in length units.
     """
     if dynamics is None or not limits or dynamics.speed_rpm is None:
         return NO_FORCE_LIMITS
@@ -112,7 +112,7 @@ def pack_forces(
         if first.force is None:
             out[COUPLE] = list(LINKS).index(str(first.link))
         elif first.joint in ("O2", "O4"):
-            out[INDEX] = np.inf  # the frame bears it: nothing that moves does
+            out[INDEX] = np.inf  # the load acts on the frame alone
         else:
             out[STRENGTH] = abs(complex(*(first.force.constant or (1.0, 0.0)))) or 1.0
     # Aim lower by the share that a peak between two positions may add.
@@ -132,11 +132,10 @@ def count_force_margins(forces: Real) -> int:
 
 @njit(**OPTIONS)
 def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real, out: Real) -> None:
-    """Compute the peaks of n fourbars in each window, shape (n, WINDOW_COUNT, QUANTITIES); infinite if one does not
-    close.
+    """Compute the peaks of n fourbars in each window, shape (n, WINDOW_COUNT, QUANTITIES); infinite if one is open.
 
-    ``charts`` (n, 9) and ``lengths`` (n, 4) are of the linkages, ``ends`` (n, 2) their crank angles from the ground
-    line at the first point and the last.
+    ``charts`` (n, 9) and ``lengths`` (n, 4) describe the linkages, and ``ends`` (n, 2) are their crank angles from the
+    ground line at the first and the last point.
     """
     count, size, block = len(charts), forces[SIZE], forces[BLOCK:]
     loads = int(block[LOADS])
@@ -179,7 +178,7 @@ def compute_window_peaks(charts: Real, lengths: Real, sign: float, ends: Real, f
     )  # fmt: skip
     out[:, :, : QUANTITIES - 1] = found[:, :, : QUANTITIES - 1]
     if forces[INDEX] < np.inf:
-        # The first of the loads alone, on links without mass.
+        # Only the first of the loads, on links without mass.
         couples = np.zeros(3)
         first = 0 if forces[COUPLE] >= 0.0 else 1
         if first == 0:
@@ -204,15 +203,15 @@ def compute_force_margins(x: Real, lengths: Real, sign: float, ends: Real, force
     Parameters
     ----------
     x, lengths : float, shapes (9 or more,) and (4,)
-        Of the chart.
+        Unknowns of the chart, and lengths.
     sign : float
         Assembly.
     ends : float, shape (2,)
         Crank angles from the ground line at the first point and the last.
     forces : float, shape (m,)
-        Of :func:`pack_forces`.
+        Packed limits, see :func:`pack_forces`.
     values : float, shape (count_force_margins(forces),)
-        Written.
+        Output: the margins.
     """
     found = np.empty((1, WINDOW_COUNT, QUANTITIES))
     charts, sizes, angles = np.empty((1, 9)), np.empty((1, 4)), np.empty((1, 2))

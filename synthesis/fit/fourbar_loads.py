@@ -1,10 +1,10 @@
-"""Masses and loads of fourbars as numbers for compiled code, for every fourbar from its joints.
+"""Masses and loads of fourbars, packed for compiled code that evaluates them for any fourbar from its joints.
 
-A block becomes one vector, :func:`pack_loads`. The data of a link are the sum of three parts, each with its mass, first
-moment and polar second moment: bodies at points of the plane (with the linkage at its first target), bodies at points
-of the link (from its first joint, along the direction to the second), and a plate about the link's joints, a bar or
-their convex hull widened, less its holes, as in :mod:`kinematics.dynamics.shapes`. :func:`weigh_links` combines them
-for the joints of one fourbar.
+A block of dynamics becomes one vector, :func:`pack_loads`. The data of a link are the sum of three parts, each with its
+mass, first moment and polar second moment: bodies at points of the plane (with the linkage at its first target), bodies
+at points of the link (from its first joint, along the direction to the second), and a plate about the link's joints.
+The plate is a bar, or the widened convex hull of the joints, minus its holes, as in :mod:`kinematics.dynamics.shapes`.
+:func:`weigh_links` combines the parts for the joints of one fourbar.
 
 Everything is in the unit of the forces. Points are relative to the task's origin: a distant origin would cost digits.
 """
@@ -35,13 +35,13 @@ ON_PIN = {"A": PIN_A, "B": PIN_B, "P": PIN_P}
 FIXED = "O2", "O4"
 
 SPEED, GRAVITY, AT_POINT, ABOUT, PINS, COUPLES, LOADS, BODIES = 0, 1, 3, 4, 6, 9, 12, 13
-"""Indices of a block: the input's speed, gravity (x, y), whether shaking moments are about a given point, and that
-point; masses at A, B and P; torques on the links; the number of forces; the beginning of the links."""
+"""Indices of a block: the input's speed; gravity (x, y); whether shaking moments are about a given point, and that
+point; masses at A, B and P; torques on the links; number of forces; beginning of the records of the links."""
 
 IN_PLANE, IN_LINK, PLATE, LINK = 0, 4, 8, 15
 """Indices in a link's record: mass, first moment (x, y) and polar moment of bodies in the plane, and of bodies in the
-link; density times thickness, width (0 without a plate), whether ends are square, overhang, and radii of holes at its
-joints. The last is the length of a record."""
+link; density times thickness, width (0 without a plate), whether ends are square, overhang, and radii of the holes at
+the joints. The last constant is the length of a record."""
 
 FORCES = BODIES + 3 * LINK
 """Beginning of the forces. Each record: the part on which it acts, whether its point is given in the plane, the point,
@@ -51,11 +51,11 @@ FORCE = 7
 
 
 class _UnsupportedBlockError(ValueError):
-    """A block that these numbers cannot represent."""
+    """A block that cannot be packed into a vector."""
 
 
 def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real | None:
-    """Pack a block into a vector, or return None if it has other elements.
+    """Pack a block into a vector, or return None if it has elements that the vector cannot represent.
 
     Such elements are springs, friction, variable loads, polygons with corners in both frames, and links that a fourbar
     lacks.
@@ -63,11 +63,11 @@ def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real
     Parameters
     ----------
     block : DesignDynamics
-        With a rotating input.
+        Masses and loads of a linkage with a rotating input.
     unit : str
         The length unit.
     origin : complex
-        Of the task, in length units.
+        Origin of the task, in length units.
     """
     try:
         return _LoadPacker(block, unit, origin).pack()
@@ -76,7 +76,7 @@ def pack_loads(block: DesignDynamics, unit: LengthUnit, origin: complex) -> Real
 
 
 class _LoadPacker:
-    """Converter of one block."""
+    """Converter of one block into a vector."""
 
     def __init__(self, stated: DesignDynamics, unit: LengthUnit, origin: complex) -> None:
         self.stated, self.scale, self.origin = stated, stated.scale(unit), origin
@@ -132,6 +132,7 @@ class _LoadPacker:
         return True, self._pack_place(complex(*place))
 
     def _pack_force(self, load: LoadSpec) -> Sequence[float]:
+        """Return the record of a constant force, see :data:`FORCES`."""
         constant = None if load.force is None else load.force.constant
         if constant is None:
             raise _UnsupportedBlockError
@@ -155,6 +156,7 @@ class _LoadPacker:
         _add_body(out, plane, Body(np.asarray(mass), np.asarray(centre), np.asarray(inertia)))
 
     def _pack_shape(self, shape: Shape, joints: Sequence[str], out: Real) -> None:
+        """Add the parts and the polygon of a shape to the link's bodies, and write its plate with holes."""
         for part in shape.parts:
             self._pack_part(part, shape.material_density, out)
         if shape.thickness is None:
@@ -179,6 +181,7 @@ class _LoadPacker:
         plate[4 : 4 + len(joints)] = [0.5 * self.scale * shape.holes.get(joint, 0.0) for joint in joints]
 
     def _pack_part(self, part: Part, of_shape: float, out: Real) -> None:
+        """Add a prism or a cylinder; ``of_shape`` is the density if the part has none of its own."""
         plane, centre = self._resolve_place(part.at)
         density, length = of_shape if part.density is None else part.density, self.scale * part.length
         if part.form == "prism":
@@ -226,7 +229,7 @@ def _integrate_bar(p: complex, q: complex, width: float, square: bool, overhang:
 
 @njit(**OPTIONS)
 def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) -> tuple[float, complex, float]:
-    """Integrate the same for the convex hull of three joints, widened by half the width all round."""
+    """Integrate area and moments of the convex hull of three joints, widened by half the width all round."""
     corners = (a, b, p)
     turned = (b - a).real * (p - a).imag - (b - a).imag * (p - a).real
     # Collinear joints: the hull is the bar between the two that are farthest from each other.
@@ -277,7 +280,7 @@ def _integrate_widened_hull(a: complex, b: complex, p: complex, width: float) ->
 def _subtract_holes(
     row: Real, reach: complex, third: complex, area: float, middle: complex, second_moment: float
 ) -> tuple[float, complex, float]:
-    """Return area, first and second moment of a plate less its holes at the joints."""
+    """Return area, first and second moment of a plate minus its holes at the joints."""
     for k in range(3):
         hole = row[PLATE + 4 + k]
         if hole > 0.0:
@@ -298,13 +301,13 @@ def weigh_links(
     Parameters
     ----------
     block : float, shape (m,)
-        Of :func:`pack_loads`.
+        Packed loads, see :func:`pack_loads`.
     joints : complex, shape (5,)
         O2, A, B, O4, P at the first target, from the task's origin, in the unit of the forces.
     mass, cg, inertia : shape (3,)
-        Written, for input, coupler and output.
+        Output, for input, coupler and output.
     arms, forces : complex, shape (loads,)
-        Written.
+        Output: points of application and forces, in the form of the weights.
 
     Returns
     -------

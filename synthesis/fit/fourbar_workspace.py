@@ -6,7 +6,8 @@ B, which keeps its length, the coupler turns by dθ₃ = −Re(f̄ df)/Re(f̄ i 
 
     A = O2 + a e^{iθ},   B = A + b e^{iθ₃},   P = A + p e^{iθ₃},   O4 = O2 + d e^{iγ}.
 
-The crank's angles from the ground line depend on the unknowns, too, those between the ends in proportion.
+The crank's angles from the ground line depend on the unknowns, too; the derivatives of those between the ends are
+interpolated.
 
 A linkage that carries a body has one more unknown, the direction ψ of A → B on the body as drawn: the body is rotated
 by θ₃ − ψ.
@@ -51,10 +52,10 @@ from synthesis.numerics.augmented_lagrangian import compute_load
 _VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
 
 LINKAGE = 9
-"""Number of unknowns of a fourbar's chart; later unknowns of a fit change only the crank's angles."""
+"""Number of unknowns of a fourbar's chart; the unknowns of a fit after these change only the crank's angles."""
 
 NO_BODY = -1
-"""Stands for the index of ψ if the linkage carries no body."""
+"""Substitute for the index of ψ if the linkage carries no body."""
 
 TOGGLE_DISTANCE = 1e-3
 """Distance of a cycle's ends from a toggle, radians: at the toggle itself joints have no derivative."""
@@ -72,9 +73,8 @@ def find_crank_interval(lengths: Real, ends: Real, whole: bool, room: Real) -> t
     low, high = find_crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
     if whole or (low == 0.0 and high == math.pi):
         return ends[0], ends[0] + 2.0 * math.pi, True, True
-    # Otherwise the range between toggles that contains the first end. The derivatives neglect that the toggles move
-    # with the lengths.
-    # Reduce the angle to −π..π, because the ranges are given around 0 and π.
+    # Otherwise the interval is the range between toggles that contains the first end. The derivatives neglect that the
+    # toggles move with the lengths. Reduce the angle to −π..π, because the ranges are given around 0 and π.
     at = ends[0] - 2.0 * math.pi * math.floor((ends[0] + math.pi) / (2.0 * math.pi))
     if low == 0.0:
         return TOGGLE_DISTANCE - high, high - TOGGLE_DISTANCE, False, False
@@ -117,12 +117,12 @@ def trace_joints(
 ) -> bool:
     """Write the joints over a motion, shape (n, 6), and at the first point, shape (6,).
 
-    n is 0 if the motion does not matter. Returns whether the linkage closes everywhere.
+    n is 0 if no motion is required. Return whether the linkage closes everywhere.
 
     Parameters
     ----------
     x, lengths : float64, shapes (9 or more,) and (4,)
-        Of the chart.
+        Unknowns of the chart, and lengths.
     sign : float
         Assembly.
     begin, end, first : float
@@ -132,7 +132,7 @@ def trace_joints(
     body : int
         Index of ψ among the unknowns, or :data:`NO_BODY`.
     places, home : complex
-        Written.
+        Output: the joints.
     """
     n = len(places)
     parts = n if ring else n - 1
@@ -187,28 +187,28 @@ def append_workspace_rows(
     Parameters
     ----------
     x, lengths, slopes : float64
-        Of the chart; ``x`` may have unknowns of the fit behind its nine.
+        Unknowns, lengths and their derivatives, of the chart. In ``x`` other unknowns of the fit may follow the nine.
     sign : float
         Assembly.
     ends, turns : float64, shapes (2,) and (2, unknowns)
         Crank angles from the ground line at the first and the last point, and their derivatives.
+    whole : bool
         Whether the crank rotates fully.
-        Whether the crank turns through its whole turn.
     body : int
         As for :func:`trace_joints`.
     room : float64, shape (r,)
-        Of :func:`synthesis.fit.workspace.pack_workspace`.
+        Packed workspace, see :func:`synthesis.fit.workspace.pack_workspace`.
     multipliers : float64, shape (margins + 1 or more,)
-        Those of the margins first, the penalty weight last.
+        Multipliers, beginning with those of the margins; the last entry is the penalty weight.
     values : float64, shape (margins,)
-        Written.
-        As for :func:`synthesis.numerics.augmented_lagrangian.append_limit_rows`.
+        Output: the margins.
+    residuals, jacobian, m
         As for :func:`synthesis.numerics.augmented_lagrangian.append_limit_rows`.
 
     Returns
     -------
     int
-        The number of rows; −1 if the motion does not close.
+        The new number of rows; −1 if the motion does not close.
     """
     count, unknowns = count_margins(room), len(x)
     rows = np.empty((count, ROW_SIZE))

@@ -3,7 +3,7 @@
 Seen from its input link, a Stephenson II is a Stephenson III: links 3, 4 and 5 are a fourbar on the input, and the
 ground is the link E D of a dyad C–E–D, with C on link 4, and E and D the fixed pivots of output and input. So the
 linkage is driven by link 3, relative to the input, and the result is then rotated so that the ground is at rest. The
-fifteen unknowns are those of :mod:`synthesis.fit.sixbar_curve`, with another meaning of some:
+fifteen unknowns are those of :mod:`synthesis.fit.sixbar_curve`, some with another meaning:
 
 * the first three are the input's fixed pivot, O2, and the direction from it to the output's, O4;
 * A₀, the pin of link 3 on the input, is the origin of the input's frame, whose real axis goes to B₀, the pin of link 5
@@ -53,8 +53,7 @@ GROUND_JOINT_COUNT = 6
 def compute_inverted_joints(
     x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float, places: Complex
 ) -> tuple[bool, float, float]:
-    """Return whether a Stephenson II closes with link 3 at θ, and the cosine and sine of its minimum transmission
-    angle.
+    """Return whether a Stephenson II closes with link 3 at θ, and cosine and sine of its minimum transmission angle.
 
     Parameters
     ----------
@@ -65,9 +64,9 @@ def compute_inverted_joints(
     carrier : int
         The link that carries P.
     theta : float
-        Radians.
+        Angle of link 3, radians.
     places : complex, shape (GROUND_JOINT_COUNT,)
-        Written: the joints, relative to the ground.
+        Output: the joints, relative to the ground.
     """
     crank = compute_unit_vector(theta)
     # Ground vector 1: the fourbar stands on the input, whose real axis it uses.
@@ -186,13 +185,13 @@ def compute_inverted_slopes(
     Parameters
     ----------
     x, lengths, sign, carrier, side, theta
-        As of :func:`compute_inverted_joints`.
+        As for :func:`compute_inverted_joints`.
     chart : float, shape (4, 4)
         Slopes of the lengths (:func:`synthesis.fit.chart.compute_lengths`).
     turns : float, shape (3, 16)
-        Written: derivatives of the angles of link 4, of link 5, and of the ground.
+        Output: derivatives of the angles of link 4, of link 5, and of the ground.
     places, by : complex, shapes (7,) and (7, 16)
-        Written: all joints, and their derivatives by the unknowns and, last, by θ; those by the first three are 0.
+        Output: all joints, and their derivatives by the unknowns and, last, by θ. Those by the first three are 0.
     """
     # The first three unknowns place the linkage on the ground and have no effect in the input's frame.
     here = x.copy()
@@ -235,8 +234,10 @@ def compute_inverted_slopes(
 
 @njit(**OPTIONS)
 def transform_to_ground(x: Real, joint: int, turns: Real, places: Complex, by: Complex, slopes: Complex) -> complex:
-    """Return a joint relative to the ground and write its derivatives (16,), from the results of
-    :func:`compute_inverted_slopes`."""
+    """Return a joint relative to the ground and write its derivatives, shape (16,).
+
+    ``turns``, ``places`` and ``by`` are the results of :func:`compute_inverted_slopes`.
+    """
     d, spin = complex(x[D], x[D + 1]), turns[2]
     back = compute_unit_vector(x[2]) * scale_complex((places[PIVOT] - d).conjugate(), math.exp(-x[DYAD + 1]))
     here = places[joint] - d

@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 SAMPLED_COUNT, SWEPT_COUNT, OPTIMIZED_COUNT = 3000, 60, 3
-"""Numbers of positions that are sampled, of those checked over the motion, and of those then improved."""
+"""Numbers of placements that are sampled, of those evaluated over the motion, and of those then improved."""
 
 MAX_ITERATIONS = 120
 """Maximum number of iterations of the simplex method."""
 
 EDGE_MARGIN = 0.1
-"""Edge of the first simplex: share of the size, and radians."""
+"""Edge of the first simplex: a share of the size for lengths, radians for the direction."""
 
 SIZE_SPREAD = 0.7
 """Standard deviation of the logarithm of a sampled size, if no two zones determine it."""
@@ -49,13 +49,13 @@ class MovingFourbar(NamedTuple):
     Attributes
     ----------
     lengths : float, shape (4,)
-        Of ground (1), input, coupler and output.
+        Lengths of ground (1), input, coupler and output.
     sign : float
         Assembly.
     ends : float, shape (2,)
-        Crank angles from the ground line between which it is used.
+        Crank angles from the ground line at the ends of the used range.
     first : float
-        Crank angle at the first target.
+        Crank angle from the ground line at the first target.
     """
 
     lengths: Real
@@ -74,7 +74,7 @@ def place_in_workspace(
     Parameters
     ----------
     space : Space
-        The workspace, length units.
+        The workspace, in length units.
     linkage : MovingFourbar
         The fourbar.
     boxes : Boxes
@@ -93,7 +93,7 @@ def place_in_workspace(
     x = np.zeros(9)
     begin, end, ring, _ = find_crank_interval(linkage.lengths, linkage.ends, False, room)
     own, home = np.zeros((count_steps(ring), PLACES), np.complex128), np.zeros(PLACES, np.complex128)
-    # A linkage that jams on the way fits nowhere.
+    # A linkage that meets a toggle on the way fits nowhere.
     if not trace_joints(x, linkage.lengths, linkage.sign, begin, end, ring, linkage.first, NO_BODY, own, home):
         return None
     sides = np.stack([boxes.left, boxes.right, boxes.low, boxes.high], axis=1) / scale
@@ -197,8 +197,7 @@ def _sample_centers(space: Space, scale: float, rng: np.random.Generator) -> Com
 def _compute_place_margins(
     room: Real, own: Complex, ring: bool, home: Complex, sides: Real, low: float, high: float, tried: Real
 ) -> Real:
-    """Compute the minimum margin of each tried place, including the margins of its size and of the boxes of its
-    pivots."""
+    """Compute the minimum margin of each tried place, including the margins of its size and of its pivots' boxes."""
     values, rows = np.empty(count_margins(room)), np.empty((count_margins(room), ROW_SIZE))
     least = np.empty(len(tried))
     for i in range(len(tried)):

@@ -19,7 +19,8 @@ SIZE_COUNT, TURN_COUNT = 49, 12
 """Numbers of sizes and directions of the grid."""
 
 MAX_SIZE_FACTOR = 10.0
-"""Maximum factor between a size and the preferred one, unless a limit of length is narrower."""
+"""Maximum ratio of a size to the preferred one, or of the preferred one to a size, unless a limit of length is
+narrower."""
 
 TURN_WEIGHT = 0.05
 """Weight of a rotation by one radian relative to the logarithm of a size, in the distance between placements."""
@@ -28,12 +29,13 @@ TURN_WEIGHT = 0.05
 def place_under_forces(
     forces: Real, linkage: MovingFourbar, sizes: tuple[float, float], preferred: Placement
 ) -> Placement:
-    """Find the placement nearest to a preferred one within the limits, or the one that violates them least.
+    """Find the placement nearest to a preferred one within the limits, or the one with the smallest violation.
 
     Parameters
     ----------
     forces : float, shape (m,)
-        Of :func:`synthesis.fit.fourbar_forces.pack_forces`, about the origin 0 and with a length unit for the size.
+        Limits packed by :func:`synthesis.fit.fourbar_forces.pack_forces` with the origin 0 and one length unit as the
+        size.
     linkage : MovingFourbar
         The fourbar, without a coupler point.
     sizes : pair of float

@@ -7,7 +7,7 @@ sides of 0.
 
 With n the unit normal from the second core to the first, at the nearest points q₁ = Σ λ_k z_k and q₂,
 
-    d(distance) = Re(n̄ Σ λ_k dz_k)        while the second core is at rest.
+    d(distance) = Re(n̄ Σ λ_k dz_k)        with the second core at rest.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def compute_separation(first: Complex, second: Complex, weights: Real) -> tuple[
         Corners: a point, a bar, or a convex polygon. The second is a point or an anticlockwise polygon; the first may
         be a triangle of either orientation, or flat.
     weights : float, shape (k,)
-        λ, written.
+        Output: λ.
     """
     apart, normal, corner, after, share = _separate_along_sides(first, second)
     # A positive separation along a side may be less than the distance between two corners, so compute that exactly.
@@ -48,8 +48,8 @@ def compute_separation(first: Complex, second: Complex, weights: Real) -> tuple[
 def _separate_along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
     """Find the maximum separation along normals of sides.
 
-    Returns the separation, the normal, and the contact on the first core: two corners and the share of the second. The
-    corner is −1 if neither core has an interior.
+    Return the separation, the normal, and the contact on the first core: two corners and the share of the second. The
+    first corner is −1 if neither core has an interior.
     """
     best, normal, on, after, share = -math.inf, 0j, -1, -1, 0.0
     k, m = len(first), len(second)
@@ -88,9 +88,9 @@ def _separate_along_sides(first: Complex, second: Complex) -> tuple[float, compl
 
 @njit(**OPTIONS)
 def _compute_distance(first: Complex, second: Complex) -> tuple[float, complex, int, int, float]:
-    """Compute the distance of cores that do not overlap, as the minimum of a corner of one from a side of the other.
+    """Compute the distance of cores that do not overlap: the minimum distance of a corner from a side of the other.
 
-    Returns the same as :func:`_separate_along_sides`.
+    The return values are those of :func:`_separate_along_sides`.
     """
     k, m = len(first), len(second)
     least, offset, on, after, share = math.inf, 0j, 0, 0, 0.0
@@ -122,8 +122,8 @@ def _compute_distance(first: Complex, second: Complex) -> tuple[float, complex, 
 
 @njit(**OPTIONS)
 def measure_depth(z: complex, corners: Complex) -> tuple[float, complex]:
-    """Return how far a point lies within a simple anticlockwise polygon, negative outside, and the direction of
-    growth."""
+    """Return the depth of a point in a simple anticlockwise polygon, negative outside, and the direction in which the
+    depth increases."""
     m = len(corners)
     least, toward, on_edge, within = math.inf, 1.0 + 0j, 0j, False
     for n in range(m):

@@ -36,7 +36,7 @@ GROUND, CRANK, COUPLER, ROCKER = range(4)
 """Links that may contain C and D."""
 
 INPUT = 4
-"""Stands for the holder of a Stephenson II: the fourbar is on the input link, and E D is the ground
+"""Code for the holder of a Stephenson II: the fourbar is on the input link, and E D is the ground
 (:mod:`synthesis.fit.inverted_curve`); the carrier is then the link that has P."""
 
 C, D, DYAD, P = 7, 9, 11, 13
@@ -54,7 +54,7 @@ def compute_turn_rate(f: complex, change: complex, per: float) -> float:
 
 @njit(**OPTIONS)
 def project_across(along: complex, change: complex) -> float:
-    """Return the component of a change across a direction."""
+    """Return the component of a change perpendicular to a direction, positive to its left."""
     return along.real * change.imag - along.imag * change.real
 
 
@@ -163,8 +163,10 @@ def _differentiate_pin(
     frame: int, at: int, x: Real, lengths: Real, chart: Real, ground: complex, crank: complex, along: complex,
     out: complex, turn: Real, swing: Real, by: Complex,
 ) -> complex:  # fmt: skip
-    """Return a pin and write its derivatives, from those of the rotations of coupler and rocker; ``at`` is the index of
-    its coordinates."""
+    """Return a pin and write its derivatives, given those of the rotations of coupler and rocker.
+
+    ``at`` is the index of the pin's coordinates among the unknowns.
+    """
     by[:] = 0.0
     local, o2 = complex(x[at], x[at + 1]), complex(x[0], x[1])
     direction = 1.0 + 0j
@@ -205,10 +207,10 @@ def differentiate_pins(
     x: Real, lengths: Real, chart: Real, sign: float, carrier: int, holder: int, theta: float, turns: Real,
     by_c: Complex, by_d: Complex,
 ) -> tuple[bool, complex, complex]:  # fmt: skip
-    """Return whether the fourbar closes, C and D; write their derivatives (16,) by the unknowns and, last, the crank
-    angle.
+    """Return whether the fourbar closes, and C and D; write their derivatives, each of shape (16,).
 
-    ``turns`` (2, 16) receives the derivatives of the directions of coupler and rocker.
+    They are by the unknowns and, last, by the crank angle. ``turns`` (2, 16) receives the derivatives of the directions
+    of coupler and rocker.
     """
     ground, crank = compute_unit_vector(x[2]), compute_unit_vector(theta)
     closes, along, out = close_fourbar(x, lengths, sign, crank, ground)
@@ -269,7 +271,7 @@ def compute_cosine(x: Real, c: complex, d: complex) -> float:
 
 @njit(**OPTIONS)
 def differentiate_cosine(x: Real, c: complex, d: complex, by_c: Complex, by_d: Complex, row: Real) -> float:
-    """Return the same cosine and write its derivatives by the unknowns (15,), given the pins and their derivatives."""
+    """Return the cosine of the angle between the links at E, and write its derivatives by the unknowns, shape (15,)."""
     first, second, base = math.exp(x[DYAD]), math.exp(x[DYAD + 1]), d - c
     over = 1.0 / (first * second)
     for k in range(UNKNOWNS):

@@ -1,7 +1,7 @@
 """Transmission angles at the three legs of a Stephenson II's triad, seen from the input link, with derivatives.
 
 Link 4 is guided on the input link by the links 3 and 5, legs O₂A and O₄B, and on the ground by the output, leg jq: j is
-the output's pin on the ground, q its other one. The transmission angle at a leg is the angle between the leg and the
+the output's pin on the ground and q its other pin. The transmission angle at a leg is the angle between the leg and the
 normal of the path on which the other two legs guide its pin on link 4
 (:mod:`kinematics.linkage.planar.triad_transmission` has the formula that the core uses; here the path is the one about
 the pole, the intersection of the other two legs). While the sines do not vanish, which they do together, the input
@@ -27,8 +27,7 @@ def cross(u: complex, v: complex) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_push_direction(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> complex:
-    """Return the direction in which pin q of link 4 moves: perpendicular to the line from the pole, where two legs
-    meet.
+    """Return the direction in which pin q of link 4 moves, normal to the line from the pole, where two legs meet.
 
     It is multiplied by the cross product of the legs, so that it also exists for parallel legs.
     """
@@ -113,8 +112,8 @@ def differentiate_leg_slant(
     leg: int, pins: tuple[complex, complex, complex, complex, complex, complex],
     rates: tuple[complex, complex, complex, complex, complex, complex],
 ) -> float:  # fmt: skip
-    """Return the rate of the cosine at a leg, given the six pins in the order of :func:`find_min_slant`, and their
-    rates."""
+    """Return the rate of the cosine at a leg, given the six pins and their rates in the order of
+    :func:`find_min_slant`."""
     q, j, o2, a, o4, b = permute_legs(leg, *pins)
     by_q, by_j, by_o2, by_a, by_o4, by_b = permute_legs(leg, *rates)
     by_way = differentiate_push_direction(q, o2, a, o4, b, by_q, by_o2, by_a, by_o4, by_b)

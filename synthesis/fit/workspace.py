@@ -1,4 +1,4 @@
-"""A workspace as numbers for compiled fits: obstacles to avoid, a box to stay within, and zones for pivots.
+"""A workspace packed for compiled fits: obstacles to avoid, a box to stay within, and zones for pivots.
 
 The block ``space`` becomes one vector in task coordinates, :func:`pack_workspace`.
 :mod:`synthesis.fit.workspace_margins` turns the joints of a linkage along its motion into these margins, in this order:
@@ -6,15 +6,16 @@ The block ``space`` becomes one vector in task coordinates, :func:`pack_workspac
 ============ ======================================= ==========================================================
 constraint   margins                                 value, in task sizes
 ============ ======================================= ==========================================================
-pivot zones  one for each pivot that has zones       how far it lies within the nearest of them
-box          four for each window of the motion      how far the parts lie within a side
+pivot zones  one for each pivot that has zones       depth of the pivot in the nearest of them
+box          four for each window of the motion      distance of the parts from a side, positive inside
 obstacles    one for each window, part and obstacle  distance of the outlines minus the clearance; minus the depth
                                                      for outlines that overlap
 forces       one for each window and limit           :mod:`synthesis.fit.fourbar_forces`, for fourbars only
 ============ ======================================= ==========================================================
 
-The motion is divided into :data:`WINDOW_COUNT` windows of :data:`STEP_COUNT` steps each. In a window the nearest place
-counts, between the steps too. So rows are few, and the nearest place may move along the motion while a fit descends.
+The motion is divided into :data:`WINDOW_COUNT` windows of :data:`STEP_COUNT` steps each. In each window the nearest
+place counts, also between the steps. So rows are few, and the nearest place may move along the motion while a fit
+descends.
 Obstacles and the body are convex pieces (:mod:`synthesis.fit.convex_pieces`).
 
 All fits aim at slightly narrower limits than those checked (:data:`AIM_SHARE`), so that the sweep of the finished
@@ -38,7 +39,7 @@ WINDOW_COUNT, STEP_COUNT = 12, 4
 """Number of windows of the motion, and of steps in each."""
 
 AIM_SHARE = 1e-4
-"""Extra margin of all fits beyond the checked limits, as a share of the task's size."""
+"""Amount by which all fits aim inside the checked limits, as a share of the task's size."""
 
 NARROW_SHARE = 0.2
 """Maximum extra margin in a small zone, as a share of its half width."""
@@ -46,8 +47,8 @@ NARROW_SHARE = 0.2
 O2, A, B, O4, P, TURN = range(6)
 """Joints, in the order in which margins expect their places, followed by the rotation e^{iα} of a carried body."""
 
-# Number of entries above.
 PLACES = 6
+"""Number of these places."""
 
 FOURBAR_PARTS = ((O2, A), (O4, B), (A, B, P))
 """Parts of a fourbar with a coupler point; with an outline of the body the coupler is A, B alone."""
@@ -57,8 +58,8 @@ MAX_PIECES = 120
 with more are simplified for the fit, but not for verification."""
 
 MAX_GROUPS = 24
-"""Maximum number of pieces of obstacles, and of the body, with margins of their own; beyond it the pieces of an outline
-share them."""
+"""Maximum number of pieces of obstacles, and of the body, with margins of their own. If there are more, all pieces of
+an outline share a margin."""
 
 (
     COUNT_INDEX, HALF_WIDTH_INDEX, CLEARANCE_INDEX, LEFT_INDEX, RIGHT_INDEX, LOW_INDEX, HIGH_INDEX, HAS_BOX_INDEX,
@@ -66,7 +67,7 @@ share them."""
     ZONE_COUNT_INDEX, ZONES_START_INDEX, PARTS_START_INDEX, BODY_START_INDEX, PIECES_START_INDEX, EASED_INDEX,
     FORCE_COUNT_INDEX, FORCES_START_INDEX,
 ) = range(23)  # fmt: skip
-"""Indices of a workspace's numbers: number of margins; half of a link's width; required clearance; the box, and whether
+"""Indices of a packed workspace: number of margins; half of a link's width; required clearance; the box, and whether
 one exists; P of the body as drawn; whether the whole cycle counts; numbers of parts, of groups of the body's pieces, of
 groups of the obstacles' pieces, of these pieces, and of pivots with zones; the beginnings of these tables; the easing
 by which the body's limits are less narrow in the first and last window; number and beginning of the margins of forces
@@ -75,7 +76,7 @@ by which the body's limits are less narrow in the first and last window; number 
 HEADER_SIZE = 23
 
 NO_WORKSPACE = np.zeros(0)
-"""Empty workspace."""
+"""Packed workspace without constraints."""
 
 
 def _pack_box(
@@ -108,7 +109,7 @@ def pack_workspace(
     space : Space or None
         The requested workspace.
     origin, size : complex and float
-        Of the task.
+        Origin and size of the task.
     first : complex, optional
         P of the body as drawn, in the problem's coordinates, for a linkage that carries one.
     aim : float
@@ -117,7 +118,7 @@ def pack_workspace(
         Clearance of the body beyond the required one at the ends of the motion. The targets fix the body there, so
         its limits cannot be narrowed further.
     forces : float
-        Limits on forces, of :func:`synthesis.fit.fourbar_forces.pack_forces`.
+        Limits on forces, packed by :func:`synthesis.fit.fourbar_forces.pack_forces`.
     """
     if space is None:
         return _append_forces(np.zeros(HEADER_SIZE), [[], [], [], []], forces) if len(forces) else NO_WORKSPACE
@@ -184,7 +185,7 @@ def _append_forces(header: Real, tables: Sequence[list[list[float]]], forces: Re
 
 def select_zones(room: Real) -> Real:
     """Return a packed workspace with the pivots' zones alone, which need no motion; empty without zones."""
-    # Zeroed counts make the kernels skip the other tables, so the tables need not be removed.
+    # With counts of zero the kernels skip the other tables, so the tables need not be removed.
     if not len(room) or room[ZONE_COUNT_INDEX] == 0.0:
         return NO_WORKSPACE
     zones = room.copy()
@@ -204,7 +205,7 @@ def _list_outlines(space: Space) -> list[tuple[Complex, float]]:
 def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
     """Pack convex pieces as records: group, radius, middle, reach about it, number of corners, corners."""
     found = [decompose_convex(corners, 1.0, MAX_PIECES) for corners, _ in outlines]
-    # The first pass limits each outline alone; too many in total, then share the limit equally.
+    # The first pass limits the pieces of each outline; if there are too many in total, the outlines share the limit.
     if sum(len(pieces) for pieces, _ in found) > MAX_PIECES:
         share = max(MAX_PIECES // len(outlines), 1)
         found = [decompose_convex(corners, 1.0, share) for corners, _ in outlines]
@@ -226,8 +227,10 @@ def _pack_pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]
 
 
 def _pack_zones(space: Space, origin: complex, size: float, carries: bool, aim: float) -> list[list[list[float]]]:
-    """Pack the zones of each pivot as records: joint, whether on the body, radius, margin, number of corners,
-    corners."""
+    """Pack the zones of each pivot as records.
+
+    A record holds the joint, whether the zone is on the body, its radius, margin, number of corners, and corners.
+    """
     fixed, moving = space.fixed_pivots, space.moving_pivots
     demanded = (
         fixed.input if fixed else None,

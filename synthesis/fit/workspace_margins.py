@@ -51,14 +51,14 @@ ROW_SIZE = WEIGHTS_COLUMN + 2 * PLACES
 """Length of a row."""
 
 FAR_GAP = 0.25
-"""Maximum distance, in task sizes: larger ones are cut off."""
+"""Maximum distance of the margins, in task sizes: larger ones are cut off."""
 
 CONVERGENCE_TOLERANCE = 0.1
-"""Margins above this, in task sizes, are lower bounds without a row: no limit bears a load there."""
+"""Margin, in task sizes, above which only a lower bound is computed, without a row: no limit bears a load there."""
 
 MAX_NARROWINGS, DUPLICATE_TOLERANCE = 4, 1e-3
-"""Maximum number of places between steps at which the nearest place is searched, and the distance of two of them, as a
-share of a step, below which the search has converged."""
+"""Search for the nearest place between steps: maximum number of places evaluated, and the distance between two of them,
+as a share of a step, below which the search has converged."""
 
 
 @njit(**OPTIONS)
@@ -69,8 +69,7 @@ def count_margins(room: Real) -> int:
 
 @njit(**OPTIONS)
 def count_steps(ring: bool) -> int:
-    """Return the number of steps of a motion; a full turn has one less, because its end coincides with its
-    beginning."""
+    """Return the number of steps of a motion; a full turn has one less, because its end is its beginning."""
     return WINDOW_COUNT * STEP_COUNT + (0 if ring else 1)
 
 
@@ -81,16 +80,16 @@ def compute_margins(room: Real, places: Complex, ring: bool, home: Complex, valu
     Parameters
     ----------
     room : float, shape (r,)
-        Of :func:`synthesis.fit.workspace.pack_workspace`, not empty.
+        Packed workspace, see :func:`synthesis.fit.workspace.pack_workspace`; not empty.
     places : complex, shape (n, 6)
         Joints, and the body's rotation, at ``n = count_steps(ring)`` equal steps of the motion, in task coordinates.
         Entries that the linkage lacks are ignored.
     ring : bool
         Whether the end of the motion continues at its beginning.
     home : complex, shape (6,)
-        The same in the first position.
+        Joints, and the body's rotation, in the first position.
     values, rows : float, shapes (count_margins(room),) and (count_margins(room), ROW_SIZE)
-        Written.
+        Output: the margins and their rows.
     """
     rows[:] = 0.0
     first = _write_zone_margins(room, home, values, rows)
@@ -107,15 +106,15 @@ def differentiate_margin(row: Real, ring: bool, slopes: Complex, home: Complex, 
     Parameters
     ----------
     row : float, shape (ROW_SIZE,)
-        Of the margin.
+        Row of the margin.
     ring : bool
         As for :func:`compute_margins`.
     slopes : complex, shape (n, 6, m)
-        Derivatives of the places at the steps. Only those of :func:`compute_parabola_weights` are used.
+        Derivatives of the places at the steps. Only the steps of :func:`compute_parabola_weights` are used.
     home : complex, shape (6, m)
-        The same of the first position.
+        Derivatives of the places in the first position.
     out : float, shape (m,)
-        Written.
+        Output: the derivatives of the margin.
     """
     out[:] = 0.0
     if row[STEP_COLUMN] < 0.0:
@@ -141,7 +140,7 @@ def add_derivative(row: Real, share: float, slopes: Complex, out: Real) -> None:
 def compute_parabola_weights(
     step: int, share: float, ring: bool, n: int
 ) -> tuple[tuple[int, int, int], tuple[float, float, float]]:
-    """Return three steps and their weights, which give the place a share of a step off a step."""
+    """Return three steps and the weights of their places, which give the place at a share of a step from ``step``."""
     # At the ends of an open range the parabola is that of the nearest inner step.
     k = step if ring else min(max(step, 1), n - 2)
     t = share + (step - k)
@@ -163,7 +162,7 @@ def _add_weight(row: Real, joint: int, weight: complex) -> None:
 
 @njit(**OPTIONS)
 def _write_zone_margins(room: Real, home: Complex, values: Real, rows: Real) -> int:
-    """Write how far pivots lie within the nearest of their zones; return the number of these margins."""
+    """Write the depth of each pivot in the nearest of its zones; return the number of these margins."""
     at, m, pivot = int(room[ZONES_START_INDEX]), -1, -1
     drawn = complex(room[FIRST_X_INDEX], room[FIRST_Y_INDEX])
     while room[at] >= 0.0:
@@ -200,8 +199,8 @@ def _write_zone_margins(room: Real, home: Complex, values: Real, rows: Real) -> 
 
 @njit(**OPTIONS)
 def _find_parabola_minimum(before: float, here: float, after: float) -> float:
-    """Return the share of a step, −1 to 1, at which the parabola through three margins is lowest; 0 if it does not bend
-    up."""
+    """Return the share of a step, −1 to 1, at which the parabola through three margins is minimal; 0 if it is not
+    convex."""
     bend = before - 2.0 * here + after
     if not bend > 0.0 or before < here or after < here:
         return 0.0
@@ -224,9 +223,9 @@ def _get_easing(room: Real, window: int) -> float:
 
 @njit(**OPTIONS)
 def _measure_side_distance(room: Real, here: Complex, side: int, eased: float) -> tuple[float, int, complex]:
-    """Measure how far the parts lie within a side of the box.
+    """Measure the distance of the parts from a side of the box, positive inside.
 
-    Returns the distance, the nearest joint, and the point of the body if a corner of the body is nearest, else 0.
+    Return the distance, the nearest joint, and the point of the body if one of its corners is nearest, otherwise 0.
     """
     axis, toward = side // 2, 1.0 if side % 2 == 0 else -1.0
     limit, half = room[LEFT_INDEX + side], room[HALF_WIDTH_INDEX]
@@ -256,7 +255,7 @@ def _measure_side_distance(room: Real, here: Complex, side: int, eased: float) -
 
 @njit(**OPTIONS)
 def _write_box_margins(room: Real, places: Complex, ring: bool, values: Real, rows: Real, first: int) -> int:
-    """Write how far the parts lie within each side of the box in each window; return the number of the next margin."""
+    """Write the distance of the parts from each side of the box in each window; return the next margin's number."""
     n = len(places)
     depths = np.empty((4, n))
     for step in range(n):
@@ -289,8 +288,10 @@ def _write_box_margins(room: Real, places: Complex, ring: bool, values: Real, ro
 
 @njit(**OPTIONS)
 def _write_core(room: Real, part: int, record: int, here: Complex, core: Complex) -> int:
-    """Write the corners of a part: link ``part``, or the piece of the body at ``record`` if it is −1; return their
-    number."""
+    """Write the corners of a part, and return their number.
+
+    The part is the link ``part``, or the piece of the body at ``record`` if ``part`` is −1.
+    """
     if part >= 0:
         at = int(room[PARTS_START_INDEX]) + 4 * part
         count = int(room[at])
@@ -471,8 +472,10 @@ def _measure_gap_between(
     weights: Real,
     radius: float,
 ) -> tuple[float, complex]:
-    """Return the gap and its direction at a share of a step off a step; ``here``, ``core`` and ``weights`` are
-    overwritten."""
+    """Return the gap and its direction at a share of a step from ``step``.
+
+    ``here``, ``core`` and ``weights`` are overwritten.
+    """
     _interpolate_places(places, step, share, ring, here)
     count = _write_core(room, part, record, here, core)
     gap: tuple[float, complex] = _measure_gap(room, core[:count], radius, piece, weights[:count])
@@ -534,10 +537,12 @@ def _write_nearest_row(
 
 @njit(**OPTIONS)
 def _find_lowest(left: float, at_left: float, middle: float, at_middle: float, right: float, at_right: float) -> float:
-    """Return the lowest point of the parabola through three places, or a point of the longer half if it does not bend
-    up."""
+    """Return the lowest point of the parabola through three places.
+
+    If the three values lie on a line, return the middle of the longer half.
+    """
     one, two = (middle - left) * (at_middle - at_right), (middle - right) * (at_middle - at_left)
-    # Three equal values: the parabola is flat, so bisect.
+    # The three values lie on a line, for example if they are equal: the parabola has no vertex, so bisect.
     if one == two:
         return 0.5 * (middle + (left if middle - left > right - middle else right))
     return float(middle - 0.5 * ((middle - left) * one - (middle - right) * two) / (one - two))

@@ -1,13 +1,13 @@
-"""The best linkages on the grid of a shop, or made of links in stock: all those near a design, driven.
+"""Search for the best linkages near a design on the grid of a shop, or with links in stock.
 
-Rounding each dimension separately is far from optimal, because the errors of several can cancel. Every combination of
-grid values within :data:`REACH_STEPS` steps of the design is driven to all targets, or until it can no longer be among
-the best; no linearization is used, and no combination is omitted. A fourbar that guides a body has nine dimensions and
-two million combinations.
+Rounding each dimension separately is far from optimal, because the errors of several dimensions can cancel. Every
+combination of grid values within :data:`REACH_STEPS` steps of the design is driven to all targets, or until it can no
+longer be among the best. No linearization is used, and no combination is omitted. A fourbar that guides a body has nine
+dimensions and two million combinations.
 
-Links in stock may differ much from those of a design. For each choice of links the other dimensions follow from the
-design's by Gauss and Newton's method with the exact derivatives, while the links change in steps. With a grid as well,
-the others are then searched on it around the result.
+Links in stock may differ much from those of a design. For each choice of links, the other dimensions are found by the
+Gauss-Newton method with exact derivatives, starting from those of the design, while the links change in steps. If a
+grid is requested as well, the other dimensions are then searched on the grid around the result.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ from synthesis.model.linkage.conversion import (
 from synthesis.model.manufacture.request import Manufacture, RequiredTargets
 
 Limits = tuple[float, float]
-"""Limits of distance, and of angle in radians."""
+"""Limit of the distance from a target, and limit of the angle, radians."""
 
 REACH_STEPS = 2
 """Number of grid steps to either side of a design that are searched, in all dimensions at once."""
 
 MAX_KEPT = 256
-"""Maximum number of linkages that a search keeps, the nearest to the task first."""
+"""Maximum number of linkages that a search keeps: those with the smallest errors at the targets."""
 
 BATCH_DIMENSIONS = 6
 """Number of dimensions covered by one batch: 5⁶ = 15,625 combinations fit the cache."""
@@ -58,25 +58,26 @@ MAX_CHOICES = 64
 """Maximum number of choices of links in stock, those most similar to the design first."""
 
 MAX_REFINED_CHOICES = 6
-"""Maximum number of these choices around which a grid is searched, the best first."""
+"""Maximum number of choices of links around which a grid is searched, the best first."""
 
 STEP_COUNT, NEWTON_STEPS = 6, 3
-"""Number of steps in which links change to those in stock, and of Gauss-Newton steps at each."""
+"""Number of steps in which the links change to those in stock, and number of Gauss-Newton steps at each of them."""
 
 
 class NearbyLinkages(NamedTuple):
-    """Linkages near a design, the nearest to its task first.
+    """Linkages near a design, those with the smallest errors first.
 
     Attributes
     ----------
     task : Task
-        With adjusted inputs if these are free; misses are measured by the size of the task and in radians.
+        Targets of the linkages. Inputs are adjusted if they are free. The units of errors are the size of the task and
+        the radian.
     rows : float, shape (v, n)
-        Their dimensions.
+        Dimensions of the v linkages.
     squares : float, shape (v,)
-        Sums of the squares of their misses.
+        Sums of the squares of their errors at the targets.
     body : float or None
-        Angle from A → B to the body's line, radians, if a body is carried.
+        Angle from A → B to the body's line, radians; None if no body is carried.
     """
 
     task: Task
@@ -85,7 +86,7 @@ class NearbyLinkages(NamedTuple):
     body: float | None
 
     def compute_body_angle(self, coupler: float) -> float | None:
-        """Return the body's angle, degrees, for a direction of A → B in radians."""
+        """Return the body's angle, degrees, if the direction of A → B is ``coupler``, radians."""
         return None if self.body is None else math.degrees(coupler + self.body)
 
 
@@ -101,21 +102,20 @@ def find_nearest_on_grid(
     Parameters
     ----------
     linkage : Linkage
-        The design, as exact as it was found.
+        The design before rounding.
     held : RequiredTargets
-        Its requirements.
+        Requirements on the design at its targets.
     block : Manufacture
-        With ``round`` or ``stock``.
+        The block of the problem, with ``round`` or ``stock``.
     used : pair of float or None
-        The range of the input on which linkages must stay on their branch, radians.
+        Range of the input, radians, on which the linkages must stay on their branch; None without this requirement.
     limits : pair of float, optional
-        Maximum errors: distance, and angle in radians. They apply to targets without a tolerance of their own, and are
-        ignored if some have one.
+        Maximum errors: distance, and angle in radians. They are ignored if some targets have tolerances of their own.
 
     Returns
     -------
     NearbyLinkages or str
-        At most :data:`MAX_KEPT` linkages; only the nearest if none satisfies the limits. A message if the search is
+        At most :data:`MAX_KEPT` linkages; only the best one if none satisfies the limits. A message if the search is
         impossible.
     """
     found = find_target_inputs(linkage, held, (held.size, 1.0), used)
@@ -133,7 +133,7 @@ def find_nearest_on_grid(
     )
     row = linkage.row[: task.dimensions]
     names = linkage.list_names(guides=task.guides)
-    # Limits help only if every target uses them.
+    # The limits can reject linkages only if they apply to every target.
     kept = None if has_own_tolerances(held) or limits == (math.inf, math.inf) else limits
     body = None
     if task.sort == "poses" and held.angles is not None and task.angles is not None:
@@ -142,16 +142,16 @@ def find_nearest_on_grid(
         values = _list_candidates(row, names, block, held.kept)
         rows, taken = _search_combinations(linkage, task, values, kept, screened=block.quality is not None)
         if not len(rows):
-            # None satisfies them: return the nearest alone, whose error shows how far off the grid is.
+            # No linkage satisfies the limits: return the best one, whose error shows how coarse the grid is.
             rows, taken = (part[:1] for part in _search_combinations(linkage, task, values, None))
         return NearbyLinkages(task, rows, taken, body)
-    # From here on links come from stock.
+    # Otherwise the links are taken from the stock.
     moving = [k for k, name in enumerate(names) if name.startswith("links.")]
     rows, taken = _search_stock(linkage, task, row, np.array(sorted(set(block.stock.links))), names, held.kept)
     if block.round is not None:
         parts = [(np.empty((0, len(row))), np.empty(0))]
         for centre in rows[:MAX_REFINED_CHOICES]:
-            # Links stay those of the stock; only the other dimensions are on the grid.
+            # The links remain those in stock; only the other dimensions are searched on the grid.
             values = _list_candidates(centre, names, block, held.kept)
             for k in moving:
                 values[k] = centre[k : k + 1]
@@ -162,7 +162,7 @@ def find_nearest_on_grid(
 
 
 def has_own_tolerances(held: RequiredTargets) -> bool:
-    """Return whether targets have tolerances of their own."""
+    """Return whether some targets have tolerances of their own, given by the task."""
     return held.limits is not None and bool(((held.limits > 0.0) & np.isfinite(held.limits)).any())
 
 
@@ -178,19 +178,21 @@ def _list_candidates(row: Real, names: list[str], block: Manufacture, kept: froz
             continue
         # Grid values around the nearest one.
         counts = np.arange(-REACH_STEPS, REACH_STEPS + 1) + round(float(at) / step)
-        # 3 times 0.1 is not 0.3 in binary: round to 12 digits to get the decimal multiple that a user expects.
+        # In binary, 3 · 0.1 is not 0.3: round to 12 digits to get the decimal multiple that a user expects.
         listed = np.array([float(f"{count * step:.12g}") for count in counts])
-        # Links need positive lengths; a very short one becomes one step.
+        # Links need positive lengths. A link much shorter than a step gets the length of one step.
         if link:
             listed = listed[listed > 0.0] if (listed > 0.0).any() else np.array([step])
-        # Nearest values first, so that good combinations come early and shorten the later search.
+        # The nearest values come first, so that good combinations are found early and shorten the rest of the search.
         values.append(listed[np.argsort(np.abs(listed - at), kind="stable")])
     return values
 
 
 def _list_dial_settings(linkage: Linkage, task: Task, rows: Real) -> Real | None:
-    """Return the dial settings of a slider: its positions are counted from the foot of the pivot, which the grid
-    moves."""
+    """Return the dial settings of a slider for each row of dimensions; None for other tasks.
+
+    The positions of a slider are counted from the foot of the fixed pivot on its line, which moves with the pivot.
+    """
     if task.guides or not task.slides:
         return None
     moved = (rows[:, 0] - linkage.row[0]) + 1j * (rows[:, 1] - linkage.row[1])
@@ -200,18 +202,19 @@ def _list_dial_settings(linkage: Linkage, task: Task, rows: Real) -> Real | None
 def _search_combinations(
     linkage: Linkage, task: Task, values: list[Real], limits: Limits | None, *, screened: bool = False
 ) -> tuple[Real, Real]:
-    """Return the best of all combinations of values, driven: rows (v, n) and sums of squares (v,), smallest first.
+    """Drive all combinations of values and return the best ones: rows (v, n) and sums of squares (v,), smallest first.
 
-    With limits, only those that satisfy them. ``screened`` means that the limits are tight, so they are tested first.
+    With ``limits``, only combinations that satisfy them are returned. ``screened`` means that the limits are tight, so
+    that it is faster to test them first.
     """
-    # The last dimensions form a batch; the first ones are enumerated around it, which bounds the memory.
+    # The last dimensions form a batch, and the first ones are enumerated around it; this limits the memory.
     split = max(len(values) - BATCH_DIMENSIONS, 0)
     inner = np.stack(np.meshgrid(*values[split:], indexing="ij"), axis=-1).reshape(-1, len(values) - split)
     batch = np.empty((len(inner), len(values)))
     batch[:, split:] = inner
     rows, taken, most = np.empty((0, len(values))), np.empty(0), math.inf
     if limits is not None:
-        # A combination within the limits at every target cannot have a larger sum of squares.
+        # No combination within the limits at every target has a larger sum of squares.
         most = len(task.inputs) * ((limits[0] / task.units[0]) ** 2 + (limits[1] / task.units[1]) ** 2)
     for outer in combined(*values[:split]):
         batch[:, :split] = outer
@@ -221,7 +224,7 @@ def _search_combinations(
             near = measure_shares(dataclasses.replace(task, greatest=True, units=limits), batch, settings)
             some = np.flatnonzero(near <= 1.0 + LIMIT_SLACK)
             settings = None if settings is None else settings[some]
-        # Driving stops as soon as the sum exceeds ``most``, the worst of the kept ones.
+        # A combination is driven only until its sum exceeds `most`, the largest sum of those kept so far.
         square = measure_squares(task, batch[some], most, settings)
         good = np.flatnonzero(np.isfinite(square))
         if limits is not None:
@@ -231,7 +234,7 @@ def _search_combinations(
         if not len(good):
             continue
         rows, taken = np.concatenate([rows, batch[some][good]]), np.concatenate([taken, square[good]])
-        # Prune as soon as there are too many; the threshold then falls and speeds up the rest.
+        # Discard the worst as soon as there are too many; the lower threshold speeds up the rest of the search.
         if len(taken) > MAX_KEPT:
             first = np.argpartition(taken, MAX_KEPT)[:MAX_KEPT]
             rows, taken = rows[first], taken[first]
@@ -243,7 +246,10 @@ def _search_combinations(
 def _search_stock(
     linkage: Linkage, task: Task, row: Real, stock: Real, names: list[str], kept: frozenset[str]
 ) -> tuple[Real, Real]:
-    """Return linkages of links in stock, the other dimensions fitted to the task: rows and sums, smallest first."""
+    """Return linkages with links in stock, whose other dimensions are fitted to the task.
+
+    Return rows of dimensions and sums of squares, smallest first.
+    """
     moving = [k for k, name in enumerate(names) if name.startswith("links.")]
     free = np.array([k for k, name in enumerate(names) if k not in moving and name not in kept], np.intp)
     # Try the most similar links first, by the sum of logarithmic differences.
@@ -257,31 +263,30 @@ def _search_stock(
 
 
 def _bring_to_lengths(task: Task, row: Real, moving: list[int], links: Real, free: NDArray[np.intp]) -> Real | None:
-    """Return the dimensions with other links, reached in steps from those of the design; None if the steps diverge."""
+    """Return the dimensions of a linkage with other links, reached in steps from the design; None if a step fails."""
     weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]])
-    # On the way the branch limits do not matter; the caller drives the result with them.
+    # On the way, the linkages need not stay on their branch; the caller verifies the result.
     loose = dataclasses.replace(task, used=None)
     at = row.copy()
     for share in np.linspace(0.0, 1.0, STEP_COUNT + 1)[1:]:
-        # Change the links in steps, so that Gauss and Newton's method stays near its solution.
+        # Change the links in steps, so that the Gauss-Newton method stays near its solution.
         at[moving] = row[moving] + share * (links - row[moving])
         for _ in range(NEWTON_STEPS):
             off = compute_sensitivities(loose, at)
             if not (np.isfinite(off.rates).all() and np.isfinite(off.offsets).all()):
                 return None
             slopes = (off.rates[:, :, free] * weights[:, None]).reshape(-1, len(free))
-            # Least squares of minimal norm, because fewer targets than dimensions leave freedom.
+            # Take the least-squares solution of minimum norm, because few targets may leave dimensions undetermined.
             at[free] -= np.linalg.lstsq(slopes, (off.offsets * weights).ravel(), rcond=1e-9)[0]
     at[moving] = links
     return at
 
 
 def build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarMechanism | SliderCrankMechanism | None:
-    """Return one of the linkages near a design as a mechanism of an answer, at the first target; None if it is
-    impossible."""
+    """Build linkage ``n`` near a design as a mechanism of an answer, at the first target; None if it is impossible."""
     try:
         return _build_mechanism(linkage, near, n)
-    except DimensionError:  # the grid may have both fixed pivots in one place
+    except DimensionError:  # on the grid both fixed pivots may coincide
         return None
 
 
@@ -291,7 +296,7 @@ def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarM
     theta, sign = float(driven.inputs[0, 0]), int(task.assemblies[0])
     if not math.isfinite(theta):
         return None
-    # Linkages that guide no body keep the point of the design, which plays no role.
+    # Linkages that guide no point keep the point of the design, which has no effect.
     point = complex(row[-2], row[-1]) if task.guides else complex(linkage.row[-2], linkage.row[-1])
     o2 = complex(row[0], row[1])
     if task.slide_angle is None:
@@ -300,7 +305,7 @@ def _build_mechanism(linkage: Linkage, near: NearbyLinkages, n: int) -> FourbarM
         body = near.compute_body_angle(float(at.coupler_angle))
         joints = FourbarConfiguration(o2, complex(at.a), complex(at.b), o4, complex(at.p))
         made = build_fourbar(joints, body)
-        # Joints are computed and rounded; the dimensions must be the grid values exactly.
+        # The mechanism is built from computed joints, but its dimensions must be exactly the grid values.
         return replace_dimensions(made if task.guides else remove_coupler_point(made), row)
     line = o2 - 1j * row[2] * task.slide_direction
     sliding = SliderCrank(o2, line, task.slide_angle, row[3], row[4], point)

@@ -1,4 +1,4 @@
-"""Dimensions and requirements of a finished fourbar or slider-crank, in the form of the compiled variants."""
+"""Dimensions and requirements of a finished fourbar or slider-crank, in the form of the compiled variation code."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ NAMES = {
     ),
     "slider_crank": ("fixed_pivot.x", "fixed_pivot.y", "offset", "links.crank", "links.coupler"),
 }
-"""Names of the dimensions by the type of the mechanism, in the order of the variants; those of P follow."""
+"""Names of the dimensions by type of mechanism, in the order of :mod:`kinematics.linkage.variation`, without P's."""
 
 POINT_DIMENSIONS = ("coupler_point.along", "coupler_point.across")
 
 LIMIT_SLACK = 1e-9
-"""Relative rounding at a limit."""
+"""Relative slack of a limit, for rounding."""
 
 OPPOSITE_SHARE = 0.5
-"""Share of the own assembly's miss at a target below which the opposite assembly is taken to be the intended one
-there."""
+"""Share of the linkage's error at a target: if the opposite assembly has a smaller error than this share, it is assumed
+to be the intended assembly at that target."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +50,15 @@ class Linkage:
     type : str
         ``fourbar`` or ``slider_crank``.
     row : float, shape (n,)
-        Its dimensions, those of P last, as of :func:`kinematics.linkage.variation.measure_deviations`.
+        Dimensions, those of P last, in the order of :func:`kinematics.linkage.variation.measure_deviations`.
     sign : int
-        Its assembly: open is +1, crossed −1.
+        Assembly: +1 for open, −1 for crossed.
     slide_angle : float or None
-        Direction of the slide, radians.
+        Direction of the slide, radians; None for a fourbar.
     foot : complex
-        The foot of the fixed pivot on the slide's line, from which travels are counted.
+        Foot of the fixed pivot on the slide's line, from which positions of the slider are counted.
     reference : float
-        Input angle of the reference, radians.
+        Input angle in the reference configuration, radians.
     """
 
     type: str
@@ -73,8 +73,10 @@ class Linkage:
         return [*NAMES[self.type], *(POINT_DIMENSIONS if guides else ())]
 
     def mark_pivots(self, *, guides: bool) -> NDArray[np.bool_]:
-        """Return a mask of dimensions that are coordinates of fixed pivots, or a slide's offset; the others are
-        lengths."""
+        """Return a mask of the dimensions that are coordinates of fixed pivots or the offset of a slide.
+
+        All other dimensions are lengths.
+        """
         named = self.list_names(guides=guides)
         return np.array([name.startswith("fixed_pivot") or name == "offset" for name in named])
 
@@ -89,7 +91,7 @@ def extract_linkage(mechanism: BaseModel) -> Linkage | None:
         ``reference_input_angle`` are used; its skeleton is ignored.
     """
     stated = mechanism.model_dump(exclude={"skeleton"})
-    # A linkage given by its skeleton alone has no assembly and no named dimensions; a driven slider is not supported.
+    # A linkage given by its skeleton alone has no assembly and no named dimensions. A driving slider is not supported.
     if stated["type"] not in NAMES or "assembly" not in stated or stated.get("driven_by") == "slider":
         return None
     point = stated["coupler_point"]
@@ -103,7 +105,7 @@ def extract_linkage(mechanism: BaseModel) -> Linkage | None:
     pivot, line = complex(*stated["fixed_pivot"]), complex(*stated["slide"]["point"])
     angle = math.radians(stated["slide"]["angle"])
     along = cmath.exp(1j * angle)
-    # Split the vector from the line's point into its parts along the slide (the foot) and across it (the offset).
+    # Resolve the vector from the line's point to the pivot along the slide (the foot) and across it (the offset).
     between = (pivot - line) * along.conjugate()
     row = [pivot.real, pivot.imag, between.imag, links["crank"], links["coupler"]]
     foot = line + along * between.real
@@ -112,21 +114,21 @@ def extract_linkage(mechanism: BaseModel) -> Linkage | None:
 
 @dataclass(frozen=True, eq=False)
 class ManufacturedLinkage:
-    """A linkage with its task, as manufactured.
+    """A linkage with its targets, for the evaluation of manufactured variants.
 
     Attributes
     ----------
     linkage : Linkage
-        As drawn.
+        The nominal linkage, as drawn.
     task : Task
-        Its targets. A target with a tolerance of the task's own is replaced by the place at which the nominal linkage
-        passes it.
+        Targets of the linkage. A target for which the task itself gives a tolerance is replaced by the place that the
+        nominal linkage reaches.
     own : float, shape (t, 3)
-        Offset of that place from the requested one: x, y and angle; 0 without a tolerance of its own.
+        Offset of that place from the requested one in x, y and angle; 0 without such a tolerance.
     limits : float, shape (t, 3)
-        The task's own tolerances, infinite without one.
+        Tolerances given by the task itself, in x, y and angle (radians); infinite if there is none.
     around : bool
-        Whether those of x limit the distance, in any direction.
+        Whether the tolerance in x limits the distance in any direction.
     """
 
     linkage: Linkage
@@ -137,7 +139,7 @@ class ManufacturedLinkage:
 
     @cached_property
     def nominal_dimensions(self) -> Real:
-        """Return the nominal dimensions, shape (n,)."""
+        """Nominal dimensions, shape (n,)."""
         return self.linkage.row[: self.task.dimensions]
 
     @property
@@ -147,21 +149,23 @@ class ManufacturedLinkage:
 
     @property
     def has_own_tolerances(self) -> bool:
-        """Whether the task has tolerances of its own."""
+        """Whether the task itself gives tolerances for targets."""
         return bool(np.isfinite(self.limits).any())
 
     def mark_within_own_tolerances(self, offsets: Real) -> NDArray[np.bool_]:
-        """Return a mask of variants, given their offsets (v, t, 3), that satisfy the task's own tolerances, shape
-        (v,)."""
+        """Return a mask, shape (v,), of the variants that satisfy the tolerances given by the task itself.
+
+        ``offsets`` are the offsets of the variants from the targets of :attr:`task`, shape (v, t, 3).
+        """
         off = np.abs(offsets + self.own)
-        # A tolerance of the point limits its distance, so both coordinates get the same value.
+        # If the tolerance limits the distance, compare the distance instead of both coordinates.
         if self.around:
             off[..., 0] = off[..., 1] = np.hypot(off[..., 0], off[..., 1])
         return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
 
 
 def build_task(linkage: Linkage, held: RequiredTargets, units: tuple[float, float]) -> Task | str:
-    """Build the task from a linkage's requirements, with the nominal inputs; a message if there is none."""
+    """Build the task from a linkage's requirements, with the nominal inputs; return a message if this is impossible."""
     sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
     task = Task(
         sort,
@@ -186,12 +190,16 @@ def build_task(linkage: Linkage, held: RequiredTargets, units: tuple[float, floa
 def find_target_inputs(
     linkage: Linkage, held: RequiredTargets, units: tuple[float, float], used: tuple[float, float] | None
 ) -> tuple[Task, Real] | str:
-    """Return the task and the errors (t, 3) of a linkage that can be assembled at every target; else a message."""
+    """Return the task of a linkage, and its errors at the targets, shape (t, 3).
+
+    Return a message if the linkage cannot be assembled at every target. ``used`` is the range of the input, radians, on
+    which it must stay on its branch.
+    """
     task = build_task(linkage, held, units)
     if isinstance(task, str):
         return task
     row = linkage.row[: task.dimensions]
-    # Without a used range each target may be met in either assembly.
+    # Without a used range, each target may be met in either assembly.
     if used is None:
         task = dataclasses.replace(task, assemblies=_choose_assemblies(task, row))
     offsets = measure_deviations(task, row[None]).offsets[0]
@@ -203,18 +211,18 @@ def find_target_inputs(
 def build_product(
     linkage: Linkage, held: RequiredTargets, block: Exactness, used: tuple[float, float] | None
 ) -> ManufacturedLinkage | str:
-    """Build a linkage with its requirements; a message if this is not possible.
+    """Build the description of a linkage for manufacture; return a message if this is impossible.
 
     Parameters
     ----------
     linkage : Linkage
-        As drawn.
+        The nominal linkage, as drawn.
     held : RequiredTargets
-        Its requirements.
+        Requirements on the linkage at its targets.
     block : Exactness
         The block of the request.
     used : pair of float or None
-        The range of the input on which it must stay on its branch, radians.
+        Range of the input, radians, on which the linkage must stay on its branch; None without this requirement.
     """
     found = find_target_inputs(linkage, held, _choose_units(block, held), used)
     if isinstance(found, str):
@@ -222,14 +230,14 @@ def build_product(
     task, offsets = found
     limits = np.full(offsets.shape, math.inf)
     if held.limits is not None:
-        # A tolerance of 0 means an exact target, which manufacturing can never meet; quality limits apply there
-        # instead.
+        # A tolerance of 0 means an exact target, which no manufactured linkage can meet. The limits of the quality
+        # apply to such targets instead.
         limits = np.where((held.limits > 0.0) & np.isfinite(held.limits), held.limits, math.inf)
     own = np.where(np.isfinite(limits), offsets, 0.0)
     task = dataclasses.replace(
         task,
         adjusted=block.input == "adjusted" or (block.input is None and held.free),
-        # Move such targets to the place that the nominal linkage reaches, so that errors count from there.
+        # Replace targets with tolerances by the places that the nominal linkage reaches: errors are counted from there.
         points=None if task.points is None else task.points + own[:, 0] + 1j * own[:, 1],
         angles=None if task.angles is None else task.angles + own[:, 2],
     )
@@ -239,7 +247,7 @@ def build_product(
 def list_quality_units(quality: Quality) -> tuple[float, float]:
     """Return the quality's limits of distance and of angle (radians); infinite if not given."""
     angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
-    # No limit is an infinite one, which any error satisfies.
+    # An infinite limit is satisfied by any error.
     return quality.max_error or math.inf, angle
 
 
@@ -253,8 +261,11 @@ def _choose_units(block: Exactness, held: RequiredTargets) -> tuple[float, float
 
 
 def _convert_coupler_angles(linkage: Linkage, task: Task, held: RequiredTargets) -> Real | None:
-    """Convert requested angles of the body to angles of the line A → B, by the body's angle on the coupler in the
-    reference."""
+    """Convert requested angles of the body to angles of the line A → B.
+
+    The angle between the body and that line follows from the reference configuration. Return None if the linkage cannot
+    be assembled there.
+    """
     assert held.angles is not None
     at = dataclasses.replace(
         task,
@@ -268,7 +279,7 @@ def _convert_coupler_angles(linkage: Linkage, task: Task, held: RequiredTargets)
 
 
 def _choose_assemblies(task: Task, row: Real) -> NDArray[np.int64]:
-    """Choose the intended assembly at each target of a linkage without a fixed one: the opposite if clearly nearer."""
+    """Choose the intended assembly at each target: the linkage's own, or the opposite one if it is clearly nearer."""
     misses = []
     for sign in (1, -1):
         off = measure_deviations(dataclasses.replace(task, assemblies=sign * task.assemblies), row[None])

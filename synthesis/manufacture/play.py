@@ -1,20 +1,22 @@
-"""Effect of pin clearances at the targets of a linkage: the set of places that P can reach, bounded.
+"""Effect of pin clearances at the targets of a linkage: bounds of the positions that P can reach.
 
 A pin may lie anywhere in its hole: a massless *clearance link* between the two centres, at most as long as the
 clearance and in any direction (Ting, Zhu and Watkins, The effects of joint clearance on position and orientation
 deviation of linkages and manipulators, Mechanism and Machine Theory 35 (2000) 391). At a fixed input, the clearances at
 O2 and A move the crank's pin by a vector α in a disc of radius ρ, the sum of both; those at B and O4 lengthen or
-shorten the output by γ, |γ| ≤ σ, and the clearance of a pin B on a slide moves the slide sideways. So the set is that
-of a dyad with three numbers. With n the guide's normal at B, u = B − A and p = P − A, as in
+shorten the output by γ, |γ| ≤ σ. The clearance of a pin B on a slide moves the slide sideways. So the configuration of
+the dyad depends on three numbers, α (two) and γ. With n the guide's normal at B, u = B − A and p = P − A, as in
 :mod:`kinematics.linkage.variation`,
 
     δφ = (|n| γ − n·α) / n·iu,        δP = α + i p δφ
 
-to first order. It is convex, and its support in the direction e is ρ |e − (e·ip) m| + σ |(e·ip) g| with
-m = n / n·iu and g = |n| / n·iu. An output turns, or slides, by α alone, in a disc of the sum of all clearances.
+to first order. The set of the displacements δP is convex, and its support in the direction e is
+ρ |e − (e·ip) m| + σ |(e·ip) g| with m = n / n·iu and g = |n| / n·iu. The motion of an output depends on α alone, which
+then lies in a disc whose radius is the sum of all clearances.
 
-Higher orders are found by driving the closure at :data:`DIRECTION_COUNT` directions, at both ends of γ and in the
-middle. :data:`SAFETY_FACTOR` times the maximum difference is added to every support.
+Higher orders are found by driving the linkage with α in :data:`DIRECTION_COUNT` directions, and γ at both ends and in
+the middle of its range. The maximum difference from the first order, times :data:`SAFETY_FACTOR`, is added to every
+support.
 """
 
 from __future__ import annotations
@@ -30,22 +32,25 @@ from synthesis.manufacture.linkage import ManufacturedLinkage
 from synthesis.model.manufacture.answer import Play
 
 DIRECTION_COUNT = 72
-"""Number of directions of clearance links that are driven."""
+"""Number of directions of the clearance vector α that are driven."""
 
 CORNER_COUNT = 24
-"""Number of corners of an outline."""
+"""Number of corners of the reported outline."""
 
 SUPPORT_COUNT = 720
-"""Number of directions in which the farthest point is searched; its distance is accurate to 1e-5."""
+"""Number of directions in which the farthest point is searched; they give its distance to 1e-5 of its value."""
 
 SAFETY_FACTOR = 1.5
-"""Factor of the driven higher-order part: it is quadratic, and half of it covers maxima between driven points."""
+"""Factor by which the driven higher-order part is enlarged, to cover its maxima between the driven points."""
 
 
 class _Configuration(NamedTuple):
-    """The linkage at its targets, each of shape (t,): A, u = B − A, the normal n of the guide, its fixed part, P − A.
+    """The nominal linkage at its targets.
 
-    ``sign`` is the side of the line from A to the guide's centre on which B lies.
+    Attributes
+    ----------
+    a, u, normal, arm : complex, shape (t,)
+        Position of A, u = B − A, normal n of the guide at B, and p = P − A.
     """
 
     a: Complex
@@ -55,24 +60,24 @@ class _Configuration(NamedTuple):
 
 
 def compute_plays(made: ManufacturedLinkage, clearance: float) -> list[Play] | None:
-    """Compute the effect of clearances at each target; None if they reach a toggle, where it is unbounded.
+    """Compute the effect of clearances at each target; None if they let the linkage reach a toggle.
 
     Parameters
     ----------
     made : ManufacturedLinkage
-        The linkage with its task.
+        The linkage with its targets.
     clearance : float
-        Maximum distance of each pin's centre from that of its hole.
+        Maximum distance between the centres of each pin and its hole.
     """
     at = _evaluate_nominal(made)
-    # n·iu is 0 at a toggle: the coupler's rotation is then unbounded.
+    # At a toggle n·iu is 0, and the rotation of the coupler is unbounded.
     lever = _multiply_scalar(at.normal, 1j * at.u)
     if not np.isfinite(lever).all() or np.any(lever == 0.0):
         return None
     guides = made.task.guides
-    # Two pins on the input side; on the output side two pins, or one pin and the slide.
+    # The input side has two pins. The output side has two pins, or one pin on a slide.
     crank, guide = 2.0 * clearance, (1.0 if made.task.slides else 2.0) * clearance
-    # For an output all clearances act along its path; its own fixed pivot adds to the disc.
+    # For an output, all clearances act together, so both radii are added.
     discs = (crank, guide) if guides else (crank + guide, 0.0)
     slope, gain = at.normal / lever, np.abs(at.normal) / lever
     plays = []
@@ -89,7 +94,7 @@ def compute_plays(made: ManufacturedLinkage, clearance: float) -> list[Play] | N
 
 
 class _DrivenClearances(NamedTuple):
-    """Driven clearance links: α and γ, and the resulting changes of P, of the coupler's angle, and of B."""
+    """Driven clearances α and γ, and the resulting changes of P, of the coupler's angle, and of B."""
 
     alpha: Complex
     gamma: Real
@@ -112,7 +117,7 @@ def _evaluate_nominal(made: ManufacturedLinkage) -> _Configuration:
         across = 1j * task.slide_direction
         line = o2 - across * row[2]
         gap = _multiply_scalar(line - a, across)
-        # The assembly's sign chooses on which side of A, along the slide, B lies.
+        # The sign of the assembly determines on which side of A, along the slide, B lies.
         u = task.slide_direction * task.assemblies * np.sqrt(row[4] ** 2 - gap**2) + across * gap
         normal = np.full(len(a), across)
         length = row[4]
@@ -124,9 +129,12 @@ def _evaluate_nominal(made: ManufacturedLinkage) -> _Configuration:
 
 
 def _close_dyad(to_centre: Complex, b: float, c: Real | float, sign: NDArray[np.int64] | int) -> Complex:
-    """Return u = B − A of a dyad with lengths b and c; NaN if it does not close."""
+    """Return u = B − A of a dyad with lengths b (A–B) and c; NaN if it does not close.
+
+    ``to_centre`` is the vector from A to the fixed pivot, and ``sign`` the assembly.
+    """
     f = np.abs(to_centre)
-    # Factored differences of squares keep the digits of nearly equal lengths.
+    # The factored differences of squares preserve the digits of nearly equal lengths.
     part = (f * f + (b - c) * (b + c)) / (2.0 * f)
     with np.errstate(invalid="ignore"):
         height = np.sqrt((b - part) * (b + part))
@@ -136,11 +144,11 @@ def _close_dyad(to_centre: Complex, b: float, c: Real | float, sign: NDArray[np.
 def _drive_clearances(
     made: ManufacturedLinkage, at: _Configuration, discs: tuple[float, float]
 ) -> _DrivenClearances | None:
-    """Drive clearance links at their extremes; None if some of them reach a toggle."""
+    """Drive the linkage at one target with extreme clearances; None if some of them reach a toggle."""
     row, task = made.linkage.row, made.task
     around = discs[0] * np.exp(2j * np.pi * np.arange(DIRECTION_COUNT) / DIRECTION_COUNT)
     shares = np.array([-1.0, 0.0, 1.0])
-    # Full and half radius: the nonlinear part need not be largest on the rim.
+    # Drive both the full and half the radius, because the nonlinear part need not be at its maximum on the rim.
     alpha = np.concatenate([np.repeat(around, 3), 0.5 * np.repeat(around, 3)])
     gamma = discs[1] * np.tile(shares, 2 * DIRECTION_COUNT)
     a = at.a + alpha
@@ -150,7 +158,7 @@ def _drive_clearances(
         gap = _multiply_scalar(complex(row[0], row[1]) - across * row[2] - a, across) + gamma
         with np.errstate(invalid="ignore"):
             way = np.sqrt((b - gap) * (b + gap))
-        # Stay in the assembly in which the nominal linkage stands.
+        # Stay in the assembly of the nominal linkage.
         forward = 1.0 if _multiply_scalar(at.u, complex(task.slide_direction))[0] > 0.0 else -1.0
         u = task.slide_direction * forward * way + across * gap
     else:
@@ -172,21 +180,21 @@ def _compute_point_play(
     discs: tuple[float, float],
     driven: _DrivenClearances,
 ) -> Play:
-    """Return the places of P around its position at target k, and the coupler's rotation."""
+    """Return bounds of the displacement of P at target k and of the coupler's rotation, and an outline around P."""
     arm = complex(at.arm[0])
-    # First-order rotation of the coupler, to be compared with the driven one.
+    # This is the first-order rotation of the coupler, to be compared with the driven one.
     turned = gain * driven.gamma - _multiply_scalar(slope, driven.alpha)
     rest = SAFETY_FACTOR * float(np.abs(driven.place - driven.alpha - 1j * arm * turned).max())
 
     def compute_support(direction: Complex) -> Real:
         by = _multiply_scalar(direction, 1j * arm)
-        # Support function of the sum of two sets, plus the safety for higher orders.
+        # The support of the sum of two sets is the sum of their supports; higher orders are added.
         return np.asarray(discs[0] * np.abs(direction - by * slope) + discs[1] * np.abs(by * gain) + rest)
 
     least = np.exp(2j * np.pi * np.arange(SUPPORT_COUNT) / SUPPORT_COUNT)
     corners = np.exp(2j * np.pi * np.arange(CORNER_COUNT) / CORNER_COUNT)
     reach = compute_support(corners)
-    # Two neighbouring tangents e·z = h intersect in a corner of the circumscribed polygon.
+    # Neighbouring tangents e·z = h intersect in the corners of the circumscribed polygon.
     nexts, far = np.roll(corners, -1), np.roll(reach, -1)
     meet = -1j * (reach * nexts - far * corners) / np.sin(2.0 * np.pi / CORNER_COUNT)
     stands = complex(at.a[0]) + arm
@@ -207,7 +215,7 @@ def _compute_output_play(
     discs: tuple[float, float],
     driven: _DrivenClearances,
 ) -> Play:
-    """Return the rotation, or the travel, of the output at target k."""
+    """Return the bound of the output's rotation, or of its displacement along the slide, at target k."""
     if made.task.slides:
         along = complex(made.task.slide_direction)
         moved = _multiply_scalar(driven.pin, along)
@@ -219,7 +227,7 @@ def _compute_output_play(
         return Play(index=k, max_error=error)
     normal = complex(at.normal[0])
     turned = np.angle((normal + driven.pin) / normal)
-    # Derivative of the output's angle by a displacement of B.
+    # This vector is the derivative of the output's angle by a displacement of B.
     tangent = 1j * normal / abs(normal) ** 2
     first = _multiply_scalar(driven.alpha, tangent) - _multiply_scalar(1j * at.u, tangent) * _multiply_scalar(
         slope, driven.alpha

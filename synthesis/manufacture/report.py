@@ -1,4 +1,4 @@
-"""Manufacturing report of a design: yield, worst case, sensitivities, and the tolerances that matter."""
+"""Manufacturing report of a design: yield, worst case, sensitivities, and the most important tolerances."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from synthesis.model.manufacture.answer import Allocation, ManufactureReport, Se
 from synthesis.model.manufacture.request import Exactness, Manufacture, RequiredTargets
 
 IMPORTANT_SHARE = 0.8
-"""Share of all errors that the reported important tolerances cause together."""
+"""Share of the sum of squares of all errors that the tolerances reported as important cause together."""
 
 
 class ManufactureResult(NamedTuple):
-    """Manufacturing results of a design, and its yield, if sampled."""
+    """Manufacturing results of a design, and its yield if it is sampled."""
 
     manufactured: ManufactureReport
     yield_: Yield | None
@@ -33,20 +33,20 @@ class ManufactureResult(NamedTuple):
 def report_manufacture(
     mechanism: BaseModel, held: RequiredTargets, block: Exactness, seed: int, used: tuple[float, float] | None
 ) -> ManufactureResult:
-    """Report all manufacturing results of a design.
+    """Compute all manufacturing results of a design.
 
     Parameters
     ----------
     mechanism : a model of a mechanism
-        As drawn.
+        The mechanism, as drawn.
     held : RequiredTargets
-        Its requirements.
+        Requirements on the design at its targets.
     block : Exactness
-        The block.
+        The block of the request.
     seed : int
-        Seed of the problem; the block may have its own.
+        Seed of the problem, used if the block has none.
     used : pair of float or None
-        The range of the input on which it must stay on its branch, radians; None without this requirement.
+        Range of the input, radians, on which the design must stay on its branch; None without this requirement.
     """
     linkage = extract_linkage(mechanism)
     if linkage is None:
@@ -57,14 +57,14 @@ def report_manufacture(
         return ManufactureResult(ManufactureReport(remark=made), None)
     off = list_errors(block, linkage.mark_pivots(guides=made.task.guides))
     share, rates = _compute_shares(made, off)
-    # Largest contribution first, also in the answer.
+    # Sensitivities are listed by decreasing contribution, also in the answer.
     listed = [
         _describe_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")
     ]
     remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
     clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
     play = compute_plays(made, clearance) if clearance > 0.0 else []
-    # None is not "no play": the clearances can jam the linkage.
+    # None does not mean that there is no play: within its clearances the linkage can reach a toggle.
     if play is None:
         remark = "within the clearances of its pins the linkage reaches a toggle at a target"
     allocated: list[Allocation] = []
@@ -72,7 +72,7 @@ def report_manufacture(
         allocated = find_widest_tolerances(
             made, block, seed if block.seed is None else block.seed, _compute_squares(made, rates), off
         )
-    # The block's own seed has precedence, so that a client can repeat or vary the samples alone.
+    # The seed of the block has precedence, so that a client can vary the samples without changing the search.
     seeded = seed if block.seed is None else block.seed
     report = ManufactureReport(
         seed=seeded if block.is_sampled else None,
@@ -87,7 +87,10 @@ def report_manufacture(
 
 
 def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensitivities]:
-    """Return each tolerance's share of the squares of all errors, shape (n,); zeros if derivatives are not finite."""
+    """Return the share of each tolerance in the sum of squares of all errors, shape (n,), and the derivatives.
+
+    The shares are 0 if the derivatives are not finite.
+    """
     rates = compute_sensitivities(made.task, made.nominal_dimensions)
     added = _compute_squares(made, rates) * off * off
     whole = float(added.sum())
@@ -95,8 +98,11 @@ def _compute_shares(made: ManufacturedLinkage, off: Real) -> tuple[Real, Sensiti
 
 
 def _compute_squares(made: ManufacturedLinkage, rates: Sensitivities) -> Real:
-    """Return each dimension's contribution to the squares of all errors, per square of its tolerance, shape (n,)."""
-    # Rates of distance and of angle are comparable only in units of their limits.
+    """Return the contribution of each dimension to the sum of squares of all errors, shape (n,).
+
+    The contributions are per square of the tolerance of the dimension.
+    """
+    # Derivatives of distances and of angles are comparable only in units of their limits.
     units = np.array([made.task.units[0]] * 2 + [made.task.units[1]])
     return np.asarray(np.square(rates.rates / units[:, None]).sum(axis=(0, 1)))
 
@@ -104,7 +110,7 @@ def _compute_squares(made: ManufacturedLinkage, rates: Sensitivities) -> Real:
 def _describe_sensitivity(
     made: ManufacturedLinkage, rates: Sensitivities, k: int, off: float, share: float
 ) -> Sensitivity | None:
-    """Describe the derivatives by one dimension; None if they are not finite."""
+    """Describe the derivatives by dimension ``k``; None if they are not finite."""
     x, y, turned = rates.rates[:, :, k].T
     if not np.isfinite(rates.rates[:, :, k]).all():
         return None
@@ -125,11 +131,11 @@ def _describe_sensitivity(
 
 
 def _select_important(listed: list[Sensitivity | None]) -> list[str]:
-    """Return the dimensions, largest share first, whose tolerances cause :data:`IMPORTANT_SHARE` of the errors."""
+    """Return the fewest dimensions whose tolerances cause :data:`IMPORTANT_SHARE` of the errors, in order of share."""
     named: list[str] = []
     left = IMPORTANT_SHARE
     for one in listed:
-        # The list is sorted, so the first without a share ends it.
+        # The list is sorted, so the first dimension without a share ends it.
         if left <= 0.0 or one is None or one.share <= 0.0:
             break
         named.append(one.dimension)
@@ -138,8 +144,8 @@ def _select_important(listed: list[Sensitivity | None]) -> list[str]:
 
 
 def _find_worst_case(made: ManufacturedLinkage, off: Real) -> WorstCase:
-    """Find the maximum errors over all corners of the tolerances, each of them driven."""
-    # Only dimensions with a tolerance vary: at most 2⁹ corners.
+    """Find the maximum errors over all corners of the tolerances, by driving each of them."""
+    # Only dimensions with a tolerance vary, so there are at most 2⁹ corners.
     open_ones = np.flatnonzero(off > 0.0)
     corners = np.tile(made.nominal_dimensions, (2 ** len(open_ones), 1))
     corners[:, open_ones] += np.array(list(combined((-1.0, 1.0), repeat=len(open_ones)))) * off[open_ones]

@@ -1,10 +1,10 @@
-"""The widest tolerances with which a linkage still has the required yield, cheapest first.
+"""Allocation of the widest tolerances with which a linkage still has the required yield.
 
-The cost of a tolerance t is proportional to 1/t (Chase and Greenwood, Design issues in mechanical tolerance analysis,
-Manufacturing Review 1 (1988) 50). To first order the squares of all errors add up to Σ s t², with s from the exact
-derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension separately, and
-t ∝ (n/s)^(1/3) for n dimensions that share one. This gives the proportions. The width is found by bisection with
-driven samples, as for the yield: the answer has been sampled in full, and satisfies the requirement.
+The cost of a tolerance t is assumed to be proportional to 1/t (Chase and Greenwood, Design issues in mechanical
+tolerance analysis, Manufacturing Review 1 (1988) 50). To first order, the squares of all errors add up to Σ s t², with
+s from the exact derivatives. For a given sum, the cheapest tolerances have t ∝ s^(−1/3) if each dimension has its own
+tolerance, and t ∝ (n/s)^(1/3) if n dimensions share one. This gives the proportions of the tolerances. Their common
+factor, the width, is found by bisection with driven samples, as for the yield. The result is verified by all samples.
 """
 
 from __future__ import annotations
@@ -21,39 +21,44 @@ from synthesis.model.manufacture.answer import Allocation, Yield
 from synthesis.model.manufacture.request import Exactness
 
 MAX_WIDENING = 10.0
-"""Maximum widening of a given tolerance: a larger one would be unrealistic for that shop."""
+"""Maximum widening of a given tolerance, as a factor: a larger one would be unrealistic for that shop."""
 
 MAX_ROUGH_SAMPLES = 10_000
-"""Maximum number of samples in the search of the width."""
+"""Maximum number of samples in the search for the width."""
 
 BISECTION_COUNT = 9
-"""Number of bisections of a factor of two: to a seventh of a per cent."""
+"""Number of bisections of a factor of two; they determine the width to a seventh of a per cent."""
 
 MAX_DOUBLINGS = 8
-"""Maximum number of doublings or halvings in the search of the width."""
+"""Maximum number of doublings or halvings in the search for the width."""
 
 NARROWING_FACTOR, MAX_TRIES = 0.98, 25
-"""Factor by which a width is reduced if all samples show a lower yield than the rough ones, and maximum number of
+"""Factor by which the width is reduced if all samples together do not prove the required yield, and maximum number of
 tries."""
 
 
 def find_widest_tolerances(
     made: ManufacturedLinkage, block: Exactness, seed: int, squares: Real, off: Real
 ) -> list[Allocation]:
-    """Find the widest tolerances with the required yield, cheapest first; empty if there are none.
+    """Find the widest tolerances with the required yield, cheapest allocation first.
 
     Parameters
     ----------
     made : ManufacturedLinkage
-        The linkage with its task.
+        The linkage with its targets.
     block : Exactness
-        With a quality and a yield in it.
+        The block of the request, with a quality and a required yield.
     seed : int
-        Of the samples.
+        Seed of the samples.
     squares : float, shape (n,)
-        Contribution of each dimension to the squares of all errors, per square of its tolerance.
+        Contribution of each dimension to the sum of squares of all errors, per square of its tolerance.
     off : float, shape (n,)
         Given tolerances; those of 0 remain 0.
+
+    Returns
+    -------
+    list of Allocation
+        Empty if no tolerances give the required yield.
     """
     assert block.quality is not None
     demanded = block.quality.yield_
@@ -71,7 +76,7 @@ def find_widest_tolerances(
         if scaled is None:
             continue
         tolerances, share = scaled
-        # Mean relative cost 1/t, relative to the given tolerances.
+        # The mean cost 1/t, relative to that of the given tolerances.
         cost = float(np.mean(off[open_ones] / tolerances[open_ones]))
         named = {name: float(t) for name, t in zip(made.list_names, tolerances, strict=True)}
         found.append(Allocation(by=by, tolerances=named, cost=cost, yield_=share))
@@ -80,7 +85,7 @@ def find_widest_tolerances(
 
 def _allocate_by_dimension(squares: Real, open_ones: NDArray[np.bool_]) -> Real:
     known = np.where(squares > 0.0, squares, np.nan)
-    # A dimension without influence would get an infinite tolerance; it gets that of the least influential one.
+    # A dimension without influence would get an infinite tolerance. It gets that of the least influential dimension.
     least = float(np.nanmin(known)) if np.isfinite(known).any() else 1.0
     return np.where(open_ones, np.where(squares > 0.0, squares, least) ** (-1.0 / 3.0), 0.0)
 
@@ -89,7 +94,7 @@ def _allocate_by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArr
     shape = np.zeros(len(squares))
     for sort in (open_ones & pivots, open_ones & ~pivots):
         if sort.any():
-            # The floor avoids a division by 0 if a whole sort has no influence.
+            # The floor avoids a division by 0 if no dimension of the sort has any influence.
             shape[sort] = (np.count_nonzero(sort) / max(float(squares[sort].sum()), 1e-300)) ** (1.0 / 3.0)
     return shape
 
@@ -97,21 +102,21 @@ def _allocate_by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArr
 def _scale_tolerances(
     made: ManufacturedLinkage, block: Exactness, seed: int, demanded: float, shape: Real, off: Real
 ) -> tuple[Real, Yield] | None:
-    """Find the widest tolerances of a given proportion, and their yield; None if none is small enough."""
+    """Find the widest tolerances of a given proportion, and their yield; None if even the smallest are too wide."""
     rough = min(block.samples, MAX_ROUGH_SAMPLES)
-    # Scale the proportions to the given tolerances, so that width 1 is a sensible start.
+    # Scale the proportions to the given tolerances, so that a width of 1 is a sensible start.
     unit = shape * float(np.median(off[off > 0.0] / shape[off > 0.0]))
 
     def compute_tolerances(width: float) -> Real:
         return np.minimum(width * unit, MAX_WIDENING * off)
 
     def count(width: float, samples: int) -> int:
-        # The same seed for every width: the yield is then nearly monotonic in the width.
+        # Every width uses the same samples, so that the yield is nearly monotonic in the width.
         share = sample_errors(block.distribution, seed, samples, len(off))
         return count_good(made, made.nominal_dimensions + share * compute_tolerances(width))
 
     def has_required_yield(width: float) -> bool:
-        # Rough samples suffice for the search; the final check uses all of them.
+        # Fewer samples suffice for the search; the final check uses all of them.
         return count(width, rough) >= demanded * rough
 
     # Bracket the width by factors of two, up or down from the given tolerances.
@@ -127,17 +132,17 @@ def _scale_tolerances(
             high, low = low, 0.5 * low
             if has_required_yield(low):
                 break
-        # Even the smallest width fails: the nominal design itself is too near its limits.
+        # Even the smallest width fails, because the nominal design itself is too close to its limits.
         else:
             return None
     for _ in range(BISECTION_COUNT):
-        # Geometric mean, because the width is a factor.
+        # The width is a factor, so bisect by the geometric mean.
         middle = math.sqrt(low * high)
         low, high = (middle, high) if has_required_yield(middle) else (low, middle)
     for _ in range(MAX_TRIES):
         kept = count(low, block.samples)
         ends = compute_interval(kept, block.samples)
-        # The lower end of the confidence interval must satisfy the requirement, not the estimate alone.
+        # The lower end of the confidence interval must satisfy the requirement, not only the estimate.
         if ends[0] >= demanded:
             value = kept / block.samples
             return compute_tolerances(low), Yield(value=value, low=ends[0], high=ends[1], samples=block.samples)

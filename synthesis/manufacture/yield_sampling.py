@@ -1,8 +1,8 @@
-"""Yield of a linkage: the share of manufactured linkages that are good, by samples driven in compiled batches.
+"""Yield of a linkage: the share of manufactured linkages that are good, estimated by driven samples.
 
-A sample is good if it can be assembled at every target, stays on its branch, and satisfies the quality at every target,
-and the task's own tolerances if there are any. All designs of an answer use the same samples, so that their yields
-differ by the designs and not by chance.
+A sample is good if it can be assembled at every target, stays on its branch, and satisfies the quality at every target
+as well as any tolerances of the task itself. All designs of an answer use the same samples, so that their yields differ
+by the designs and not by chance.
 
 The interval is that of Clopper and Pearson, The use of confidence or fiducial limits illustrated in the case of the
 binomial, Biometrika 26 (1934) 404: it contains the true yield with at least the nominal confidence, for any true yield.
@@ -23,11 +23,11 @@ from synthesis.model.manufacture.answer import Yield
 from synthesis.model.manufacture.request import CONFIDENCE_LEVEL, Exactness
 
 BATCH_SIZE = 8192
-"""Number of samples driven at once if their deviations are needed."""
+"""Number of samples driven at once if their deviations are needed; it limits the memory."""
 
 
 def list_errors(requested: Exactness, pivots: NDArray[np.bool_]) -> Real:
-    """Return the tolerance of each dimension: of a fixed pivot's place, or of a length; shape (n,)."""
+    """Return the tolerance of each dimension, shape (n,): that of pivots where ``pivots`` is True, else of lengths."""
     tolerances = requested.tolerances
     assert tolerances is not None
     return np.where(pivots, tolerances.pivot, tolerances.length)
@@ -36,20 +36,22 @@ def list_errors(requested: Exactness, pivots: NDArray[np.bool_]) -> Real:
 # Designs of one answer share the samples; the cache holds those of a few requests.
 @lru_cache(maxsize=4)
 def sample_errors(distribution: str, seed: int, samples: int, dimensions: int) -> Real:
-    """Sample the relative errors of each dimension, shape (samples, dimensions), as shares of its tolerance;
-    read-only."""
+    """Sample the errors of each dimension as shares of its tolerance.
+
+    The result, shape (samples, dimensions), is read-only.
+    """
     rng = np.random.default_rng(seed)
     shape = samples, dimensions
-    # A tolerance is three standard deviations of a normal distribution.
+    # The tolerance is three standard deviations of a normal distribution.
     share = rng.uniform(-1.0, 1.0, shape) if distribution == "uniform" else rng.standard_normal(shape) / 3.0
-    # The array is shared through the cache.
+    # Callers share the cached array, so it must not be changed.
     share.flags.writeable = False
     return share
 
 
 def count_good(product: ManufacturedLinkage, variants: Real) -> int:
     """Count the good variants (v, n) of a linkage."""
-    # The compiled shares alone decide if no target has a tolerance of its own; they need no deviations.
+    # If the task gives no tolerances, the compiled maximum error as a share of its limit decides, without deviations.
     if not product.has_own_tolerances:
         return int(np.count_nonzero(measure_shares(product.task, variants) <= 1.0 + LIMIT_SLACK))
     count = 0
@@ -71,14 +73,14 @@ def sample_yield(product: ManufacturedLinkage, block: Exactness, seed: int) -> Y
 
 
 def compute_interval(count: int, samples: int, confidence: float = CONFIDENCE_LEVEL) -> tuple[float, float]:
-    """Compute the confidence interval of a share that ``count`` of ``samples`` satisfied (Clopper and Pearson 1934).
+    """Compute the confidence interval of a share of which ``count`` of ``samples`` were counted (Clopper and Pearson).
 
     >>> low, high = compute_interval(0, 10, 0.95)
     >>> low, round(high, 4)
     (0.0, 0.3085)
     """
     tail = 0.5 * (1.0 - confidence)
-    # The beta function has no quantile for a count of 0 or all; the interval ends at 0 or 1 there.
+    # For a count of none or all, the beta distribution has no such quantile, and the interval ends at 0 or 1.
     low = 0.0 if count == 0 else float(betaincinv(count, samples - count + 1, tail))
     high = 1.0 if count == samples else float(betaincinv(count + 1, samples - count, 1.0 - tail))
     return low, high

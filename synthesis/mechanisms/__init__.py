@@ -1,7 +1,7 @@
-"""Given mechanisms: their dimensions in the usual form, or their skeleton; degrees and lengths.
+"""Given mechanisms, described by their usual dimensions or by their skeleton, in degrees and length units.
 
-Each model builds the analysis core's :class:`kinematics.linkage.planar.mechanism.Mechanism`. Types with complete
-dimensions are given by these; every other type is given by its skeleton.
+Each model builds a :class:`kinematics.linkage.planar.mechanism.Mechanism` of the analysis core. If the usual dimensions
+of a type are complete, they describe the mechanism; every other type is described by its skeleton.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ def is_known_by_dimensions(mechanism_type: str) -> bool:
 
 
 def _choose_model(statement: object) -> type[GivenByDimensions | GivenSkeleton]:
-    """Choose the model for a mechanism: the dimensions if its type has them and they are given, else the skeleton.
+    """Choose the model of a given mechanism: its dimensions if its type has them and they are given, else its skeleton.
 
-    Input that is no mechanism at all goes to the skeleton, whose error messages are the most general.
+    Input that is not a mechanism is parsed as a skeleton, whose error messages are the most general.
     """
-    # Already validated, for example a default or a mechanism that is passed on.
+    # The mechanism may already be validated, for example if it is a default or is passed on.
     if isinstance(statement, GivenByDimensions):
         return type(statement)
     if not isinstance(statement, dict) or not isinstance(statement.get("type"), str):
         return GivenSkeleton
-    # A skeleton without pivots cannot be complete dimensions, so it is read as a skeleton for every type.
+    # Without fixed pivots the dimensions are incomplete, so the skeleton is used for every type.
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():
         return GivenSkeleton
     return _BY_TYPE.get(statement["type"], GivenSkeleton)
 
 
 def _tag_model(model: type[BaseModel]) -> str:
-    """Return the model's tag in the union; the brackets keep it apart from names of fields."""
+    """Return the tag of a model in the union; its brackets distinguish it from names of fields."""
     return f"<{model.__name__}>"
 
 

@@ -1,4 +1,4 @@
-"""Common parts of given mechanisms: their assembly, and the refusal of contradictory dimensions."""
+"""Common functions of given mechanisms: assembly, and refusal of contradictory dimensions."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.model.linkage.given_linkage import AGREEMENT_TOLERANCE
 
 FIRST_ANGLE_DEGREES = 30
-"""First input angle, degrees, to try for a configuration: many linkages have a change point along the ground line."""
+"""First input angle, degrees, to try for a configuration; not 0, because many linkages have a change point there, with
+all links along the ground line."""
 
 
 class MechanismError(ValueError):
-    """Raised for a given mechanism that cannot exist; carries the field's path below the mechanism."""
+    """Raised for a given mechanism that cannot exist; carries the path of the field within the mechanism."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -25,8 +26,8 @@ class MechanismError(ValueError):
 
 
 def require_agreement(path: str, given: float | None, measured: float, what: str = "the fixed pivots") -> None:
-    """Refuse a redundant dimension that contradicts the others."""
-    # Relative to the larger value, so that the order of the two does not matter.
+    """Raise MechanismError if a redundant dimension contradicts the others, which give the value ``measured``."""
+    # The tolerance is relative to the larger value, so that the order of the two does not matter.
     if given is not None and abs(given - measured) > AGREEMENT_TOLERANCE * max(abs(measured), abs(given)):
         raise MechanismError(path, f"{what} give {measured:.9g}; leave the field out or correct it")
 
@@ -34,10 +35,22 @@ def require_agreement(path: str, given: float | None, measured: float, what: str
 def assemble_at_reference(
     make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]
 ) -> Mechanism:
-    """Assemble the mechanism at its reference angle, or at the first suitable angle, in degrees from 30° on.
+    """Assemble a mechanism at its reference angle, or at the first input angle at which this is possible.
 
-    ``between`` are angles, radians, from the middle of the range in which the mechanism can be assembled, if there is
-    one. That range may be narrower than a degree. The angles are computed only if needed.
+    Parameters
+    ----------
+    make : callable
+        Builds the mechanism at an input angle in radians, or raises DimensionError.
+    degrees : float or None
+        Reference input angle. If it is None, whole degrees are tried from 30° on.
+    between : iterable of float
+        Further angles to try, radians, in the middle of the range in which the mechanism can be assembled. That range
+        may be narrower than a degree. The angles are computed only if needed.
+
+    Raises
+    ------
+    MechanismError
+        If the mechanism cannot be assembled.
     """
     if degrees is not None:
         try:
@@ -46,7 +59,7 @@ def assemble_at_reference(
             raise MechanismError(
                 "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
             ) from None
-    # Whole degrees first, because they give readable results; the computed angles are a fallback.
+    # Try whole degrees first, because they give readable results; the computed angles are the fallback.
     for angle in chain((math.radians((FIRST_ANGLE_DEGREES + step) % 360) for step in range(360)), between):
         try:
             return make(angle)
@@ -56,9 +69,10 @@ def assemble_at_reference(
 
 
 def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:
-    """Find crank angles, radians, at which the distance of its pin from O4 is in the middle of the permitted range.
+    """Find crank angles, radians, at which the distance of the crank pin from O4 is in the middle of its range.
 
-    Law of cosines in the triangle O2, A, O4. Empty if no distance is permitted.
+    The range is ``least`` to ``most``, limited to distances that the crank can reach. The angles follow from the law of
+    cosines in the triangle O2, A, O4. The list is empty if the crank cannot reach the range.
     """
     ground = abs(o4 - o2)
     # Intersect the distances that the crank can reach with those that the other links permit.
@@ -66,9 +80,9 @@ def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, m
     if low > high or ground == 0.0:
         return []
     reach = 0.5 * (low + high)
-    # Factored difference of squares, as rounding would otherwise dominate for nearly equal lengths.
+    # The difference of squares is factored; otherwise rounding would dominate for nearly equal lengths.
     cosine = ((crank - reach) * (crank + reach) + ground * ground) / (2.0 * crank * ground)
-    # Clip, because rounding may exceed ±1 at an end of the range.
+    # At an end of the range, rounding may give a cosine beyond ±1.
     turn = math.acos(max(-1.0, min(1.0, cosine)))
     return [cmath.phase(o4 - o2) + turn, cmath.phase(o4 - o2) - turn]
 
@@ -76,9 +90,9 @@ def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, m
 def find_middle_sine(
     centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0
 ) -> float | None:
-    """Return the sine, ``least`` to ``most``, with centre + radius · sine in the middle of its range within ± bound.
+    """Return the sine for which centre + radius · sine is in the middle of its permitted range.
 
-    None if it cannot be within the bound.
+    The range is −``bound`` to +``bound``, limited to sines from ``least`` to ``most``. Return None if it is empty.
     """
     low, high = max(-bound, centre + radius * least), min(bound, centre + radius * most)
     return None if low > high else max(-1.0, min(1.0, (0.5 * (low + high) - centre) / radius))

@@ -34,7 +34,7 @@ FOLLOWERS: dict[FollowerType, type[core.Follower]] = {
     "translating_flat": core.TranslatingFlat,
     "oscillating_flat": core.OscillatingFlat,
 }
-"""Followers of the analysis core by their types. The first field of each is the radius of its cam: prime or base
+"""Followers of the analysis core by type. The first field of each is the radius of its cam's prime circle or base
 circle."""
 
 
@@ -50,14 +50,23 @@ def list_dimensions(kind: type[core.Follower]) -> JsonObject:
 
 
 def build_follower(name: FollowerType, radius: float, spec: object) -> core.Follower:
-    """Build a follower of the analysis core from a model with its dimensions, and the radius of its cam.
+    """Build a follower of the analysis core.
+
+    Parameters
+    ----------
+    name : str
+        Type of the follower.
+    radius : float
+        Radius of the cam's prime circle or base circle.
+    spec : object
+        A model with the dimensions of the follower; None stands for a default.
 
     Raises
     ------
     DimensionError
-        For dimensions of an impossible follower.
+        If no such follower can exist.
     """
-    # Only the fields of this type are used, so that a surplus dimension of another type has no effect.
+    # Only the fields of this type are used, so that a dimension of another type has no effect.
     build: Callable[..., core.Follower] = FOLLOWERS[name]
     dimensions = {
         dimension: default if getattr(spec, dimension) is None else getattr(spec, dimension)
@@ -85,7 +94,7 @@ class GivenFollower(Statement):
         Raises
         ------
         MechanismError
-        For missing dimensions, or those of an impossible follower.
+        If a dimension is missing, or if no such follower can exist.
         """
         # Only dimensions without a sensible default are required.
         needed = {"translating_flat": (), "oscillating_flat": ("pivot_distance",)}.get(self.type, ("roller_radius",))
@@ -94,7 +103,7 @@ class GivenFollower(Statement):
             if getattr(self, name) is None:
                 raise MechanismError(f"/follower/{name}", f"a {self.type.replace('_', ' ')} needs it")
         roller = self.type.endswith("roller")
-        # Displacement 0 is defined on the prime circle for a roller, on the base circle for a flat face.
+        # Displacement 0 is on the prime circle for a roller, and on the base circle for a flat face.
         radius = prime_radius if roller else base_radius
         if radius is None:
             name = "prime_radius" if roller else "base_radius"
@@ -218,7 +227,7 @@ class ArcContour(_NosedContour):
     def build_core(self) -> contours.SpecifiedContour:
         """Build the contour of the analysis core."""
         radius = self.flank_radius
-        # Two ways to give the flank; both together could contradict each other.
+        # Both ways to describe the flank together could contradict each other.
         if (radius is None) == (self.half_action_angle is None):
             raise MechanismError("/contour/flank_radius", "give either this or the half action angle")
         if radius is None:

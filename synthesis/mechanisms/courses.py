@@ -1,6 +1,7 @@
-"""Conversion of requested loads for the analysis core: tables over the input, resistance, and gas on a piston.
+"""Conversion of requested loads to load functions of the analysis core: tables over the input, and gas on a piston.
 
-Tables are in the units of the request; the core's load functions take its input (radians, or metres along the slide).
+Tables are in the units of the request. The load functions of the core take its input: radians, or the position along
+the slide in the length unit of the forces.
 """
 
 from __future__ import annotations
@@ -31,17 +32,17 @@ from synthesis.model.dynamics.request import LoadedLinkage
 Fault = tuple[str, str]
 
 STEP_COUNT = 360
-"""Number of positions of a turn, the best of which starts Newton's method for a dead centre."""
+"""Number of positions of a turn. The best of them is the start of Newton's method for a dead centre."""
 
 
 def count_turns(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> int:
     """Return the number of input turns after which a table repeats."""
-    # Without a number of its own, a table repeats with the mechanism.
+    # A table without a given number of turns repeats with the mechanism.
     return course.turns or round(find_cycle_from_reference(mechanism) / (2.0 * math.pi))
 
 
 def find_period_turns(block: LoadedLinkage, mechanism: Mechanism) -> int:
-    """Return the turns of the input after which mechanism and loads repeat; 0 if they never do or a slide drives."""
+    """Return the number of input turns after which mechanism and loads repeat; 0 if they never do or a slide drives."""
     if mechanism.has_slide_input:
         return 0
     try:
@@ -54,17 +55,17 @@ def find_period_turns(block: LoadedLinkage, mechanism: Mechanism) -> int:
             turns.append(count_turns(course, mechanism))
         if load.force is not None and load.force.gas is not None:
             turns.append(load.force.gas.cycle // round(FULL_TURN))
-    # All repeat together after the least common multiple.
+    # All of them repeat together after the least common multiple of their periods.
     return math.lcm(*turns)
 
 
 def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -> Iterator[Fault]:
-    """Yield contradictions of a table over the input: (path below the course, detail)."""
+    """Yield errors of a table over the input, as pairs (path within the course, detail)."""
     if course.table is None:
         return
     slide = mechanism.has_slide_input
     if slide != (course.by == "input_position"):
-        # Other checks would only repeat this error in other words.
+        # Further checks would only repeat this error in other words.
         yield "/by", "a slide drives this mechanism" if slide else "the angle of a link drives this mechanism"
         return
     if slide:
@@ -85,25 +86,30 @@ def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -
 
 
 def interpolate_table(table: Real, period: float, interpolation: Interpolation) -> Course:
-    """Return the load function of a table over the absolute input angle (degrees), periodic; complex for two values."""
+    """Return the load function of a table over the absolute input angle, degrees.
+
+    It is periodic. A table with two value columns, x and y, gives a complex function.
+    """
     angles, values = table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
-    # A table may end before its period or repeat the first row at its end; a periodic spline needs the latter.
+    # A table may end before its period, or repeat its first row at the end. The interpolation needs the repeated row.
     if angles[-1] - angles[0] < period:
         angles, values = np.append(angles, angles[0] + period), np.append(values, values[0])
     else:
-        # Use the first value at the end as well, because a rounded last row would leave a step.
+        # Copy the first value to the end, because a rounded last row would leave a step.
         values = np.append(values[:-1], values[0])
     start = angles[0]
     if interpolation == "linear":
-        # Reduce the angle to the table's own period, which need not start at 0.
+        # Reduce the angle to the period of the table, which need not start at 0.
         return lambda input: np.interp(start + (np.degrees(input[0]) - start) % period, angles, values)
     spline = CubicSpline(angles, values, bc_type="periodic")
     return lambda input: np.asarray(spline(start + (np.degrees(input[0]) - start) % period))
 
 
 def interpolate_along_slide(table: Real, scale: float) -> Course:
-    """Return the load function of a table over the position of the input slide; ``scale`` is a length unit in core
-    units."""
+    """Return the load function of a table over the position of the input slide.
+
+    ``scale`` is the length unit of the table in the length unit of the forces.
+    """
     places, values = scale * table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
     return lambda input: np.interp(input[0], places, values)
 
@@ -121,17 +127,20 @@ def build_course(course: ForceCurve | TorqueCurve, mechanism: Mechanism, scale: 
 
 
 def find_ground_slide(mechanism: Mechanism, joint: str) -> int | None:
-    """Return the number of the ground slide that carries a joint."""
+    """Return the index of the ground slide that carries a joint; None if there is none."""
     return next((n for n, s in enumerate(mechanism.slides) if s.joint == joint and s.link == GROUND), None)
 
 
 def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
-    """Find the input angle in [0, 2π) at which a joint on a ground slide is farthest from the crank, and the way back.
+    """Find the top dead centre of a joint on a ground slide.
+
+    Return the input angle in [0, 2π) at which the joint is farthest from the crank's pivot, and the unit vector of the
+    motion back.
 
     Raises
     ------
     ValueError
-        If no crank makes a full turn, or the joint does not move.
+        If no crank moves the joint, or if the crank cannot make a full turn.
     """
     if mechanism.has_slide_input:
         raise ValueError("gas pressure needs a piston moved by a crank; a slide drives this mechanism")
@@ -149,10 +158,10 @@ def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, compl
     outward = 1.0 if abs(along.max() - centre) >= abs(along.min() - centre) else -1.0
     step = 2.0 * math.pi / STEP_COUNT
     top = float(at[np.argmax(outward * along)])
-    # Newton's method for zero velocity; from half a degree away four steps reach rounding.
+    # Newton's method for zero velocity. From half a degree away, four steps reach rounding level.
     for _ in range(4):
         _, velocity, acceleration = drive(mechanism, [top], order=2).slides[name][:, 0]
-        # A joint at rest, or a toggle: keep the sampled position.
+        # At a toggle, or if the joint is at rest, keep the sampled position.
         if not np.isfinite(acceleration) or acceleration == 0.0:
             break
         # Limit the step to one sample, so that Newton's method cannot leave this extreme.
@@ -161,12 +170,12 @@ def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, compl
 
 
 def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) -> JointForce:
-    """Build the force of gas, pressure times area, on the pin of a joint.
+    """Build the gas force on the pin of a joint: gauge pressure times the area of the bore.
 
     Raises
     ------
     ValueError
-        If the joint is not on a ground slide, or no crank moves it.
+        If the joint is not on a ground slide, or if no crank moves it.
     """
     slide = find_ground_slide(mechanism, joint)
     if slide is None:
@@ -177,7 +186,7 @@ def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: f
     phase = math.radians(gas.phase)
 
     def evaluate_force(input: Real) -> NDArray[np.complex128]:
-        # An engine that runs backwards goes through its indicator diagram in the same order of events.
+        # An engine that runs backwards passes through its indicator diagram in the same order of events.
         sense = np.where(input[1] < 0.0, -1.0, 1.0)
         return np.asarray(way * area * pressure(np.asarray([sense * (input[0] - top) + phase])), np.complex128)
 

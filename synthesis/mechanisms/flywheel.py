@@ -1,10 +1,10 @@
-"""Flywheel dimensioning: energy of the fluctuation of a torque over a cycle, and the inertia that reduces it.
+"""Dimensioning of a flywheel: fluctuation of energy over a cycle, and the inertia that limits the speed fluctuation.
 
 The driver supplies the mean torque T̄ at all times; the difference from the machine's torque T changes the flywheel's
 energy. With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20:
-W has its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to first
-order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over
-time.
+W has its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I. To first
+order in the coefficient of fluctuation k = (ω_max − ω_min)/ω̄, the inertia is I = E/(k ω̄²) (eq. 11.22). The exact
+values refer to the mean speed over time, ω̄.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ ENERGY_TOLERANCE = 1e-12
 """Energy that counts as rounding, as a share of the torque's largest magnitude times the cycle."""
 
 FINE_POSITIONS = 4096
-"""Number of positions of a cycle in the sum of the time of a turn; the trapezoid rule on a smooth periodic speed."""
+"""Number of positions of a cycle at which the mean speed is computed, by the trapezoid rule. It converges fast, because
+the speed is smooth and periodic."""
 
 MAX_COEFFICIENT = 2.0
-"""Upper bound of the coefficient of fluctuation, at which the flywheel would stop and turn back."""
+"""Upper bound of the coefficient of fluctuation, at which the flywheel would stop."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Fluctuation:
     crossings, areas : float, shape (P,)
         Angles at which T crosses its mean, and the area from each to the next one, cyclically.
     highest, lowest : float
-        Angles at which the energy taken out of the flywheel is largest (the minimum speed follows), and smallest.
+        Angles at which the energy taken from the flywheel is at its maximum (minimum speed) and at its minimum.
     demand : float, shape (FINE_POSITIONS,)
         W over the cycle in equal steps.
     """
@@ -53,14 +54,14 @@ class Fluctuation:
 
 
 def compute_fluctuation(angle: Real, torque: Real) -> Fluctuation:
-    """Compute the fluctuation of a torque, by a periodic cubic through its samples.
+    """Compute the fluctuation of a torque by a periodic cubic spline through its samples.
 
     Parameters
     ----------
     angle, torque : float, shape (N + 1,)
         Equal steps of the angle over a cycle, increasing; the last position repeats the first.
     """
-    # The trapezoid rule on a full period: the last sample repeats the first and is left out.
+    # Trapezoid rule over a full period: the last sample repeats the first and is left out.
     mean = float(torque[:-1].mean())
     level = torque - mean
     # A periodic spline requires exactly equal end values.
@@ -69,7 +70,9 @@ def compute_fluctuation(angle: Real, torque: Real) -> Fluctuation:
 
 
 def compute_table_fluctuation(angle: Real, torque: Real, *, smooth: bool) -> Fluctuation:
-    """Compute the fluctuation of a torque given by a table: linear between its rows, or ``smooth`` by a periodic cubic.
+    """Compute the fluctuation of a torque given by a table.
+
+    Between the rows the torque is linear or, if ``smooth``, a periodic cubic spline.
 
     Parameters
     ----------
@@ -81,13 +84,16 @@ def compute_table_fluctuation(angle: Real, torque: Real, *, smooth: bool) -> Flu
     else:
         course = PPoly(np.stack([np.diff(torque) / np.diff(angle), torque[:-1]]), angle)
     mean = float(course.integrate(angle[0], angle[-1])) / float(angle[-1] - angle[0])
-    # Subtract the mean from the constant coefficients alone: the polynomials stay as they are.
+    # The mean affects only the constant coefficients of the polynomials.
     course.c[-1] -= mean
     return _compute_course_fluctuation(course, mean, float(np.abs(torque).max()))
 
 
 def _compute_course_fluctuation(course: PPoly, mean: float, greatest: float) -> Fluctuation:
-    """Compute the fluctuation of the part of a torque beyond its mean, as polynomials over a cycle."""
+    """Compute the fluctuation of a torque from its deviation from the mean, piecewise polynomials over a cycle.
+
+    ``greatest`` is the maximum magnitude of the torque.
+    """
     first, last = float(course.x[0]), float(course.x[-1])
     integral = course.antiderivative()
     period = last - first
@@ -97,10 +103,10 @@ def _compute_course_fluctuation(course: PPoly, mean: float, greatest: float) -> 
     crossings = np.unique(crossings[(crossings >= first) & (crossings < last)])
     stands = np.asarray(integral(crossings))
     size = greatest * period
-    # A constant torque, but for rounding: no flywheel is needed.
+    # The torque is constant to rounding, so no flywheel is needed.
     if len(crossings) < 2 or float(np.ptp(stands)) <= ENERGY_TOLERANCE * size:
         return Fluctuation(mean, 0.0, np.empty(0), np.empty(0), first, first, 0.0 * demand)
-    # Over the whole cycle W returns to its start, except that the sampled mean may differ slightly from the cubic's.
+    # Over a cycle W returns to its start, except that the mean of the samples may differ slightly from the spline's.
     round_trip = float(integral(last))
     areas = np.diff(np.append(stands, stands[0] + round_trip))
     highest, lowest = int(np.argmax(stands)), int(np.argmin(stands))
@@ -116,7 +122,7 @@ def _compute_course_fluctuation(course: PPoly, mean: float, greatest: float) -> 
 
 
 def list_pulses(found: Fluctuation, period: float) -> list[dict[str, float]]:
-    """Convert to the form of :class:`synthesis.model.dynamics.answer.Pulse`; the period of the cycle is in radians."""
+    """Return the pulses in the form of :class:`synthesis.model.dynamics.answer.Pulse`; the period is in radians."""
     ends = np.degrees(np.append(found.crossings, found.crossings[:1] + period))
     return [
         {"from": float(start), "to": float(end), "area": float(area)}
@@ -125,14 +131,14 @@ def list_pulses(found: Fluctuation, period: float) -> list[dict[str, float]]:
 
 
 def compute_first_order_inertia(energy: float, speed: float, coefficient: float) -> float:
-    """Compute E/(k ω̄²)."""
+    """Compute the inertia E/(k ω̄²), to first order in the coefficient of fluctuation k."""
     return energy / (coefficient * speed**2)
 
 
 def compute_exact_coefficient(found: Fluctuation, inertia: float, speed: float) -> float:
-    """Compute (ω_max − ω_min)/ω̄ of a shaft with this inertia whose mean speed over time is ``speed``.
+    """Compute the exact coefficient of fluctuation, (ω_max − ω_min)/ω̄, of a shaft with a given inertia.
 
-    :data:`MAX_COEFFICIENT` if the flywheel would stop.
+    ``speed`` is the mean speed over time. Return :data:`MAX_COEFFICIENT` if the flywheel would stop.
     """
     ends = find_extreme_speeds(found, inertia, speed)
     return MAX_COEFFICIENT if ends is None else (ends[1] - ends[0]) / speed
@@ -142,7 +148,7 @@ def find_extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tup
     """Find ω_min and ω_max of a shaft whose mean speed over time is ``speed``; None if it would stop."""
     if found.energy == 0.0:
         return speed, speed
-    # ω² − ω_min²: the minimum speed is where the most energy has been taken.
+    # ω² − ω_min²; the speed is at its minimum where the energy taken from the flywheel is at its maximum.
     excess = (found.demand - found.demand.max()) * (-2.0 / inertia)
     span = 2.0 * found.energy / inertia
 
@@ -150,7 +156,7 @@ def find_extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tup
         # The mean over time is the harmonic mean over the angle.
         return 1.0 / float(np.mean(1.0 / np.sqrt(least_squared + excess)))
 
-    # Even with a minimum speed near 0 the mean exceeds the required one: the shaft would stop.
+    # If the mean exceeds the required one even with a minimum speed near 0, the shaft would stop.
     if not compute_mean_speed(1e-9 * span) < speed:
         return None
     squared = brentq(lambda least: compute_mean_speed(least) - speed, 1e-9 * span, speed**2, xtol=1e-15 * speed**2)
@@ -158,7 +164,10 @@ def find_extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tup
 
 
 def find_exact_inertia(found: Fluctuation, speed: float, coefficient: float) -> float:
-    """Find the inertia with exactly the required coefficient of fluctuation, which decreases as the inertia grows."""
+    """Find the inertia that gives exactly the required coefficient of fluctuation.
+
+    The coefficient decreases as the inertia grows, so a bracket is found first.
+    """
     if found.energy == 0.0:
         return 0.0
     guess = compute_first_order_inertia(found.energy, speed, coefficient)

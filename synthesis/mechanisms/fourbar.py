@@ -1,4 +1,4 @@
-"""The pin-jointed fourbar by its dimensions."""
+"""Pin-jointed fourbars given by their dimensions."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class GivenFourbar(GivenByDimensions):
         return assemble_at_reference(
             lambda angle: catalogue.make_fourbar(linkage, angle, ASSEMBLY_SIGNS[self.assembly]),
             self.reference_input_angle,
-            # The distance of the crank pin from O4 must be within reach of coupler and output.
+            # Coupler and output must be able to bridge the distance of the crank pin from O4.
             find_reaching_angles(
                 self.links.input,
                 o2,

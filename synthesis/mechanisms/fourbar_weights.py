@@ -15,17 +15,26 @@ JOINTS = "O2", "A", "B", "O4", "P"
 
 
 def is_closed_form(block: DesignDynamics) -> bool:
-    """Return whether the closed form covers a block: no springs, friction or variable loads."""
-    # Packing itself decides; unit and origin do not matter for that.
+    """Return whether the closed form covers a block, which must have no springs, friction or variable loads."""
+    # Whether the block can be packed does not depend on the unit and the origin.
     return pack_loads(block, "m", 0j) is not None
 
 
 def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
-    """Build fourbars from their joints O2, A, B, O4, P in the reference, shape (n, 5), that turn by ``span`` from
-    there."""
+    """Build fourbars from their joints in the reference configuration.
+
+    Parameters
+    ----------
+    joints : complex, shape (n, 5)
+        O2, A, B, O4, P in the reference configuration, length units.
+    span : float, shape (n,)
+        Rotation of the input from the reference to the end of its motion, radians.
+    scale : float
+        The length unit in the unit of the forces.
+    """
     o2, a, b, o4, p = (scale * column for column in joints.T)
     line = (b - a) / np.abs(b - a)
-    # Open assembly, +1: B lies to the left of the line from A to O4.
+    # The sign of the open assembly is +1: B lies to the left of the line from A to O4.
     sign = np.where((np.conj(o4 - a) * (b - a)).imag >= 0.0, 1.0, -1.0)
     return Fourbars(
         o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (p - a) / line, sign, np.angle(a - o2), np.asarray(span)
@@ -33,24 +42,24 @@ def build_fourbars(joints: Complex, span: Real, scale: float) -> Fourbars:
 
 
 def build_weights(dynamics: DesignDynamics, joints: Complex, unit: LengthUnit) -> Weights:
-    """Build masses and loads of fourbars for a block that :func:`is_closed_form`.
+    """Build masses and loads of fourbars for a block that satisfies :func:`is_closed_form`.
 
     Parameters
     ----------
     dynamics : DesignDynamics
         Masses and loads of every fourbar.
     joints : complex, shape (n, 5)
-        O2, A, B, O4, P in the reference, length units.
+        O2, A, B, O4, P in the reference configuration, length units.
     unit : str
         The length unit.
 
     Raises
     ------
     ValueError
-        If the block has other elements.
+        If the block has springs, friction or variable loads.
     """
     count, scale = len(joints), dynamics.scale(unit)
-    # An origin near the linkages keeps the digits of moments, which are differences of products.
+    # An origin near the linkages preserves the digits of moments, which are differences of products.
     origin = complex(joints[0, 0]) if count else 0j
     block = pack_loads(dynamics, unit, origin)
     if block is None:
@@ -83,5 +92,5 @@ def _weigh_each(
 ) -> None:
     for n in range(len(joints)):
         if not weigh_links(block, joints[n], mass[n], cg[n], inertia[n], arm[n], force[n]):
-            # Holes leave nothing of a plate: an infinite mass excludes the design from every limit.
+            # If holes leave nothing of a plate, an infinite mass makes the design violate every limit.
             mass[n] = np.inf

@@ -1,4 +1,4 @@
-"""The geared fivebar by its dimensions."""
+"""Geared fivebars given by their dimensions."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from synthesis.model.linkage.given_linkage import Assembly, CouplerPointSpec, Fi
 from synthesis.model.problem import Degrees, Number, PositiveLength, Statement
 
 SAMPLE_COUNT, MAX_SAMPLES = 720, 200_000
-"""Number of input angles per turn of the faster pin, and their maximum, at which an assembly is tried."""
+"""Number of input angles per turn of the faster crank, and maximum number in total, at which an assembly is tried."""
 
 ANGLE_RESOLUTION = 1e-15
-"""Step, radians, at which the search for the best angle ends; floats of angles are no finer."""
+"""Step, radians, at which the search for the best angle ends: about the rounding of an angle."""
 
 MAX_REFINED = 16
 """Maximum number of the best input angles that are refined."""
@@ -77,10 +77,11 @@ class GivenGearedFivebar(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, o2: complex, o5: complex) -> Iterator[float]:
-        """Yield input angles at which the distance of pins A and B is well inside the range that the couplers permit.
+        """Yield input angles at which the distance of the pins A and B is well inside the range of the couplers.
 
-        They may lie in any turn until the gears repeat. The distance oscillates a few times in each turn of either pin.
-        Sampling finds the local maxima; shrinking steps then refine them, about as fast as the golden section.
+        The angles may lie in any turn until the gears repeat. The distance oscillates a few times in each turn of
+        either crank. Sampling finds the local maxima of the margin; shrinking steps then refine them, about as fast as
+        a golden section search.
         """
         ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
         low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
@@ -92,22 +93,22 @@ class GivenGearedFivebar(GivenByDimensions):
                 + self.links.output * np.exp(1j * (ground + self.gear_ratio * turn + math.radians(self.phase)))
                 - self.links.input * np.exp(1j * (ground + turn))
             )
-            # Positive inside the ring of permitted distances, relative to the larger crank.
+            # The margin is positive for permitted distances, and relative to the longer crank.
             return np.asarray(np.minimum(high - np.abs(pins), np.abs(pins) - low) / radius)
 
         turns = count_turns_until_repeat(self.gear_ratio)
-        # Sample per turn of the faster pin, since the distance changes with both.
+        # The samples are spaced by the faster crank, since the distance depends on both.
         samples = min(round(SAMPLE_COUNT * max(1.0, abs(self.gear_ratio)) * turns), MAX_SAMPLES)
         step = 2.0 * math.pi * turns / samples
         at = np.arange(samples) * step
         margin = measure_margin(at)
-        # Local maxima only, best first: neighbours of a maximum would be refined to the same place.
+        # Refine local maxima only, best first, because neighbours of a maximum would converge to the same angle.
         best = at[
             np.argsort(-np.where((margin >= np.roll(margin, 1)) & (margin >= np.roll(margin, -1)), margin, -np.inf))[
                 :MAX_REFINED
             ]
         ]
-        # Shrink by 0.7 instead of 0.5, because the best point may lie outside the halved interval.
+        # Shrink the step by 0.7, not by 0.5, because the maximum may lie outside a halved interval.
         while step > ANGLE_RESOLUTION:
             tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])
             best = tried[np.arange(len(best)), np.argmax(measure_margin(tried), axis=1)]

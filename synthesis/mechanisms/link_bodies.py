@@ -1,4 +1,4 @@
-"""Bodies of links from their given mass properties or shapes, in the unit of the forces."""
+"""Bodies of links, built from given mass properties or shapes, in the unit of the forces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def escape_pointer(name: str) -> str:
 
 
 class BlockError(ValueError):
-    """Raised for a block that gives no machine; carries the field's path below the request."""
+    """Raised for a block from which no machine can be built; carries the path of the field in the request."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -26,12 +26,12 @@ class BlockError(ValueError):
 
 
 class LinkBodies:
-    """Places and bodies of the links of one linkage in its reference configuration.
+    """Builder of points and bodies on the links of one linkage, in its reference configuration.
 
     Parameters
     ----------
     joints : mapping of str to complex
-        Places by name, length units.
+        Positions of the joints by name, length units.
     links : mapping of str to sequence of str
         The joints of each link.
     scale : float
@@ -44,7 +44,7 @@ class LinkBodies:
         self.scale = scale
 
     def resolve_place(self, link: str, place_spec: Place) -> complex:
-        """Return a place on a link, in the reference configuration."""
+        """Return a point of a link in the reference configuration, in the unit of the forces."""
         if not isinstance(place_spec, PolarPoint):
             return self.scale * complex(*place_spec)
         first, second = (complex(self.joints[joint]) for joint in self.links[link][:2])
@@ -54,7 +54,7 @@ class LinkBodies:
         """Build the body of a link."""
         if body_spec.shape is not None:
             return self._build_shape(link, body_spec.shape)
-        # Without a centre of mass, the body is at the link's first joint.
+        # A body without a given centre of gravity is at the first joint of its link.
         first = self.scale * complex(self.joints[self.links[link][0]])
         centre = first if body_spec.cg is None else self.resolve_place(link, body_spec.cg)
         return make_body(body_spec.mass or 0.0, centre, body_spec.inertia or 0.0)
@@ -76,11 +76,11 @@ class LinkBodies:
             for joint, diameter in shape.holes.items():
                 plate = plate.plus(shapes.make_disc(joints[joint], self.scale * diameter / 2.0), -1.0)
             path = f"/dynamics/bodies/{escape_pointer(link)}/shape"
-            # A flat polygon or holes larger than the plate leave no area.
+            # A degenerate polygon has no area, and too large holes leave none.
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
                 raise BlockError(path, "the plate has no area; the polygon is flat, or the holes are too wide")
             for joint, diameter in shape.holes.items():
-                # Holes up to the plate's width stay inside its round ends.
+                # A hole that is not wider than the plate stays inside its round ends.
                 wider = 0.0 if shape.width is None else diameter - shape.width
                 if wider > 0.0 and self._is_at_edge(link, joint, wider):
                     raise BlockError(
@@ -91,12 +91,12 @@ class LinkBodies:
 
     def _is_at_edge(self, link: str, joint: str, wider: float) -> bool:
         """Return whether a hole that is ``wider`` than the plate (length units) extends beyond its edge at a joint."""
-        import shapely  # holes are seldom that wide
+        import shapely  # imported on demand, because holes are seldom that wide
 
         places = {name: complex(self.joints[name]) for name in self.links[link]}
         hull = shapely.MultiPoint([(place.real, place.imag) for place in places.values()]).convex_hull
         edge = hull.exterior if hull.geom_type == "Polygon" else hull
-        # Inside a wide hull a large hole may still be far from the edge.
+        # In a wide hull, even a large hole may be far from the edge.
         return bool(2.0 * edge.distance(shapely.Point(places[joint].real, places[joint].imag)) < wider)
 
     def _build_part(self, link: str, part: Part, density: float) -> Body:

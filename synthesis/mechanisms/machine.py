@@ -1,6 +1,6 @@
-"""Conversion of a mechanism with its block ``dynamics`` to the analysis core's machine, and errors in the block.
+"""Conversion of a mechanism with its block ``dynamics`` to a machine of the analysis core, and errors of the block.
 
-Everything is formed in the unit of the forces: in metres for SI, else in the length unit as it is.
+All quantities are in the length unit of the forces: metres for SI, otherwise the length unit of the request.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ Fault = tuple[str, str]
 
 
 def find_dynamics_errors(block: DynamicsBlock, mechanism: Mechanism) -> list[Fault]:
-    """Find names in the block that the mechanism lacks: (JSON pointer below the request, detail)."""
+    """Find errors of a block for a mechanism, such as unknown names, as pairs (JSON pointer in the request, detail)."""
     faults = [
         *_find_name_errors(block, mechanism),
         *_find_report_errors(block, mechanism),
         *_find_drive_errors(block, mechanism),
     ]
-    # A machine can only be built without these errors, so the deeper checks follow last.
+    # The last checks build the machine, which is possible only without the errors above.
     return faults or _find_build_errors(block, mechanism)
 
 
 def find_weight_errors(block: LoadedLinkage, mechanism: Mechanism) -> list[Fault]:
-    """Find the same for the masses and loads of a linkage alone."""
+    """Find errors of the masses and loads of a linkage, as :func:`find_dynamics_errors`."""
     return list(_find_name_errors(block, mechanism)) or _find_build_errors(block, mechanism)
 
 
@@ -87,7 +87,7 @@ def _find_name_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterator[Fa
 def _find_friction_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     if block.friction is None:
         return
-    # With redundant constraints joint forces, and hence friction, are not determined.
+    # With redundant constraints the joint forces, and so the friction, are not determined.
     if mechanism.redundant:
         yield "/dynamics/friction", "constraints are redundant, so that the forces that cause friction are not unique"
     rubbing = find_rubbing_joints(mechanism)
@@ -178,7 +178,7 @@ def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) 
             for a in mechanism.links[link]
             for b in mechanism.links[link]
         )
-        # Shapes are consistent by construction; only given inertias can be impossible.
+        # Only a given inertia can be impossible, because shapes are consistent by construction.
         if stated.shape is None and is_too_slender(part, reach):
             warnings.append(f"bodies: {link} has a moment of inertia that no body of its mass and length has")
     massless = [link for link in mechanism.links if link != GROUND and link not in block.bodies]
@@ -206,10 +206,10 @@ def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) 
 
 
 def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) -> Machine | None:
-    """Build the machines of many designs of one topology, shape (n,), as one.
+    """Build the machines of many designs of one topology, shape (n,), as one machine.
 
-    None if loads vary, if there are springs or friction, or if the designs lack a name. A design whose holes leave
-    nothing of a plate has no finite mass.
+    Return None if loads vary, if there are springs or friction, or if the designs lack a link or joint of the block. A
+    design whose holes leave nothing of a plate gets an infinite mass.
     """
     first_one = _select_first(mechanism)
     constant = all(load.is_constant for load in block.loads)
@@ -225,7 +225,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
             try:
                 part = reader.build_body(link, stated)
             except BlockError:
-                # Infinite mass excludes the design from every limit without stopping the others.
+                # An infinite mass makes this design violate every limit, without affecting the others.
                 mass[k, n] = np.inf
                 continue
             mass[k, n], cg[k, n], inertia[k, n] = part.mass, part.cg, part.inertia
@@ -233,7 +233,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
             if load.link is not None and load.point is not None:
                 places[k, n] = reader.resolve_place(load.link, load.point)
     reading = _MachineBuilder(first_one, scale)
-    # Loads are the same for all designs but for their places, which are replaced below.
+    # The loads of all designs are the same, except for their points of application, which are replaced below.
     loads = [reading.build_load(f"/dynamics/loads/{k}", load) for k, load in enumerate(block.loads)]
     masses: dict[str, float] = {}
     for stated_mass in block.point_masses:
@@ -255,7 +255,7 @@ def build_machines(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit)
 
 
 def _select_first(mechanism: Mechanism) -> Mechanism:
-    """Return the first of many designs."""
+    """Return the first of many designs as a mechanism of its own."""
 
     def take_first(value: NDArray[Scalar]) -> NDArray[Scalar]:
         return np.asarray(np.broadcast_to(value, mechanism.shape)[0])
@@ -271,7 +271,7 @@ def _build_friction(block: LoadedLinkage, scale: float) -> Friction:
     stated = block.friction
     if stated is None:
         return Friction()
-    # Entries without friction would only slow down the iteration.
+    # Entries without friction are left out, because they would only slow down the iteration.
     pins = {joint: (pin.mu, scale * pin.radius) for joint, pin in stated.pins.items() if pin.mu > 0.0}
     return Friction(pins, {int(slide): mu for slide, mu in stated.slides.items() if mu > 0.0})
 
@@ -283,7 +283,7 @@ def find_first_fixed_pivot(mechanism: Mechanism) -> complex:
 
 
 def locate_on_link(mechanism: Mechanism, link: str, place: Place, scale: float = 1.0) -> complex:
-    """Return a place on a link in the reference configuration, in the mechanism's unit times ``scale``."""
+    """Return a point of a link in the reference configuration, in length units times ``scale``."""
     return _MachineBuilder(mechanism, scale).resolve_place(link, place)
 
 
@@ -293,27 +293,29 @@ def build_torsion_spring(mechanism: Mechanism, links: tuple[str, str]) -> Torsio
     Raises
     ------
     BlockError
-        If its rotation is undetermined.
+        If the rotation of the links relative to each other cannot be determined.
     """
     return TorsionSpring(links, 1.0, near=_MachineBuilder(mechanism, 1.0).measure_rotation("/springs", links))
 
 
 class _MachineBuilder(LinkBodies):
-    """Places, bodies, loads and springs of one mechanism in the unit of its forces."""
+    """Builder of the points, bodies, loads and springs of one mechanism, in the unit of the forces."""
 
     def __init__(self, mechanism: Mechanism, scale: float) -> None:
         super().__init__(mechanism.joints, mechanism.links, scale)
         self.mechanism = mechanism
 
     def resolve_place(self, link: str, place_spec: Place) -> complex:
-        """Return a place on a link, in the reference configuration; a ground without two pivots uses the x-axis as its
-        line."""
+        """Return a point of a link in the reference configuration, in the unit of the forces.
+
+        Angles on a link with fewer than two joints, such as a ground with one pivot, are measured from the x axis.
+        """
         if isinstance(place_spec, PolarPoint) and len(self.links[link]) < 2:
             return self.scale * (find_first_fixed_pivot(self.mechanism) + place_spec.vector)
         return super().resolve_place(link, place_spec)
 
     def build_load(self, path: str, load_spec: LoadSpec) -> Load:
-        """Build a load of the analysis core; ``path`` is its own below the request."""
+        """Build a load of the analysis core; ``path`` is the JSON pointer of the load in the request."""
         if load_spec.torque is not None:
             resisting, link = load_spec.torque.against_motion, str(load_spec.link)
             if resisting is not None:
@@ -324,7 +326,7 @@ class _MachineBuilder(LinkBodies):
             resisting = load_spec.force.against_motion
             if resisting is not None:
                 slide = find_ground_slide(self.mechanism, load_spec.joint)
-                # Resistance opposes the velocity; a joint on a slide has only that along the slide.
+                # Resistance opposes the velocity, which for a joint on a slide is along the slide.
                 return Resistance(load_spec.joint, resisting.forward, resisting.backward, slide)
             if load_spec.force.gas is not None:
                 try:
@@ -339,7 +341,7 @@ class _MachineBuilder(LinkBodies):
         return PointForce(load_spec.link, place, course, load_spec.frame == "link")
 
     def build_spring(self, path: str, spring_spec: SpringSpec) -> Load:
-        """Build a spring of the analysis core; ``path`` is its own below the request."""
+        """Build a spring of the analysis core; ``path`` is the JSON pointer of the spring in the request."""
         if spring_spec.ends is None:
             links = spring_spec.links or (GROUND, GROUND)
             rate, free = spring_spec.torsion or 0.0, math.radians(spring_spec.free_angle)
@@ -348,7 +350,8 @@ class _MachineBuilder(LinkBodies):
         size = self.scale * max(
             abs(complex(a - b)) for a in self.mechanism.joints.values() for b in self.mechanism.joints.values()
         )
-        # Without free length and preload the force is proportional to the vector itself and needs no direction.
+        # Without free length and preload, the force is proportional to the vector between the ends and needs no
+        # direction.
         if abs(complex(second - first)) <= MIN_LENGTH * size and (
             spring_spec.free_length > 0.0 or spring_spec.preload != 0.0
         ):
@@ -364,9 +367,12 @@ class _MachineBuilder(LinkBodies):
         )
 
     def measure_rotation(self, path: str, links: tuple[str, str]) -> Callable[[Real], Real]:
-        """Return a function for the approximate rotation of one link relative to another; ``path`` is the spring's."""
+        """Return a function that computes the approximate rotation of one link relative to another.
+
+        ``path`` is the JSON pointer of the spring in the request, for errors.
+        """
         try:
-            # A slide's motion does not repeat by turns, so no rotation is counted modulo a cycle.
+            # The motion of an input slide does not repeat by turns, so its period is infinite.
             period = math.inf if self.mechanism.has_slide_input else compute_cycle(self.mechanism)
         except KinematicsError as error:
             raise BlockError(path, f"the rotation of the torsion spring cannot be followed: {error}") from None

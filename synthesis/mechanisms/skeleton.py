@@ -1,5 +1,4 @@
-"""Any planar linkage by its skeleton: joints in one configuration, and the links, slides and gears that connect
-them."""
+"""Planar linkages given by their skeleton: joints in one configuration, and links, slides and gears between them."""
 
 from __future__ import annotations
 
@@ -24,16 +23,19 @@ from synthesis.model.linkage.given_linkage import (
 from synthesis.model.problem import Degrees, Point, PositiveLength, Statement
 
 MAX_SHOWN = 6
-"""Maximum number of distances in a message."""
+"""Maximum number of distances shown in an error message."""
 
 
 def assemble_skeleton(spec: SkeletonSpec, degrees: float | None = None) -> Mechanism:
-    """Build the mechanism in the reference configuration; a given input angle fixes the turn count of gears."""
+    """Build the mechanism in its reference configuration; ``degrees`` is the input angle there.
+
+    The angle matters only for gears, whose position depends on the number of turns.
+    """
     assembled = _build_mechanism(spec, 0)
     # Without gears the input angle modulo a full turn determines the configuration.
     if degrees is None or not assembled.gears or assembled.has_slide_input:
         return assembled
-    # With gears the other links depend on the turn of the input, so shift by whole turns to the given angle.
+    # With gears, the other links depend on the number of turns of the input: add whole turns to reach the given angle.
     return _build_mechanism(spec, round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
 
 
@@ -136,7 +138,7 @@ class GivenSkeleton(Statement):
         Raises
         ------
         MechanismError
-        For an invalid skeleton, and for dimensions that contradict it.
+            For an invalid skeleton, or dimensions that contradict it.
         """
         assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
         # A name without a link of its own may stand for the distance of two joints of any link.
@@ -157,7 +159,7 @@ class GivenSkeleton(Statement):
         return assembled
 
     def _require_agreement(self, assembled: Mechanism) -> None:
-        """Refuse a coupler point or an input angle that differs from the skeleton's."""
+        """Raise MechanismError if the coupler point or the input angle differs from that of the skeleton."""
         if self.coupler_point is not None:
             missing = [name for name in ("A", "B", "P") if name not in assembled.joints]
             if missing:
@@ -198,16 +200,16 @@ class GivenByDimensions(Statement, ABC):
         Raises
         ------
         MechanismError
-        For dimensions that give no mechanism, and for a skeleton that contradicts them.
+            For dimensions from which no mechanism can be assembled, or a skeleton that contradicts them.
         """
         own = self.assemble()
         if self.skeleton is None:
             return own
         assembled = assemble_skeleton(self.skeleton, self.reference_input_angle)
-        # Absolute slack, since distances of joints far from the origin carry its rounding.
+        # The slack is absolute, because distances between joints far from the origin carry the rounding of coordinates.
         slack = ROUNDING_TOLERANCE * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
         for joints in own.links.values():
-            # Compare only the joints that both have; the skeleton may have more.
+            # Compare only joints that both have, because the skeleton may have more.
             for one, other in combinations([joint for joint in joints if joint in assembled.joints], 2):
                 stated, apart = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, assembled))
                 if abs(stated - apart) > AGREEMENT_TOLERANCE * max(stated, apart) + slack:
@@ -215,7 +217,7 @@ class GivenByDimensions(Statement, ABC):
                         "/skeleton/joints",
                         f"{one} and {other} are {apart:.9g} apart; the dimensions give {stated:.9g}",
                     )
-        # The skeleton is driven, because it has joints that the dimensions lack.
+        # Return the skeleton, because it has joints that the dimensions lack.
         return assembled
 
 

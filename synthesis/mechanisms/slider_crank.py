@@ -1,4 +1,4 @@
-"""The slider-crank and its inversions by their dimensions."""
+"""Slider-cranks and their inversions, given by their dimensions."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class GivenSliderCrank(GivenByDimensions):
         """Assemble the mechanism at its reference crank angle, or at one at which this is possible."""
         pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
         line = complex(*self.slide.point)
-        # Textbooks differ in the sign of an offset, so compare its magnitude: the slide determines the side.
+        # Textbooks differ in the sign of the offset, so compare its magnitude; the slide determines the side.
         offset = None if self.offset is None else abs(self.offset)
         require_agreement(
             "/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot"
@@ -70,7 +70,10 @@ class GivenSliderCrank(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, offset: float, angle: float) -> list[float]:
-        """Find crank angles with the pin in the middle of the range from which the coupler reaches the slide."""
+        """Find crank angles, radians, with the pin in the middle of the range from which the coupler reaches the slide.
+
+        ``offset`` is the distance of the pivot from the slide's line, and ``angle`` the line's angle, radians.
+        """
         sine = find_middle_sine(offset, self.links.crank, self.links.coupler)
         return [] if sine is None else [angle + math.asin(sine), angle + math.pi - math.asin(sine)]
 
@@ -115,13 +118,13 @@ class GivenInvertedSliderCrank(GivenByDimensions):
             return self._add_body(
                 assemble_at_reference(self._assemble_at, self.reference_input_angle, ()), self.coupler_point.vector
             )
-        # The sliding line keeps this distance from O4, so the pin cannot come nearer.
+        # The sliding line has a constant distance from O4, so the pin cannot be nearer than that.
         nearest = abs(self.links.output * math.sin(math.radians(self.slide.angle)))
         between = find_reaching_angles(self.links.input, o2, o4, nearest, math.inf)
         return assemble_at_reference(self._assemble_at, self.reference_input_angle, between)
 
     def _add_body(self, bare: Mechanism, local: complex) -> Mechanism:
-        """Add the sliding link with P; its line keeps its distance from O4."""
+        """Add the link that carries P and slides on the output; ``local`` is P relative to the line A → O4."""
         o2, o4, a = (complex(bare.joints[joint]) for joint in ("O2", "O4", "A"))
         if a == o4:
             raise MechanismError("/reference_input_angle", "the crank pin is on O4; the coupler point has no direction")
@@ -130,7 +133,8 @@ class GivenInvertedSliderCrank(GivenByDimensions):
             {"O2": o2, "O4": o4, "A": a, "P": p},
             {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "P")},
             "input",
-            # Use the parallel through O4: the sliding link turns with its line, so it also keeps a parallel through O4.
+            # The sliding link does not rotate relative to the output. So a line of the sliding link that is parallel to
+            # the slide and passes through O4 always does: O4 slides on this line.
             (Slide("O4", "coupler", np.asarray(o4), bare.slides[0].angle),),
         )
 
@@ -190,14 +194,14 @@ class GivenQuickReturn(GivenByDimensions):
         )
 
     def _find_reaching_angles(self, o2: complex, o4: complex) -> list[float]:
-        """Find crank angles with C in the middle of its range within reach of the coupler from the ram's slide."""
+        """Find crank angles, radians, with C in the middle of the range from which the coupler reaches the slide."""
         slide, ground = math.radians(self.slide.angle), o2 - o4
         height = ((o4 - complex(*self.slide.point)) * cmath.exp(-1j * slide)).imag
-        # Half of the rocker's swing; a Whitworth rocker turns fully.
+        # Half of the rocker's swing; the rocker of a Whitworth mechanism turns fully.
         lean = math.pi if self.links.crank > abs(ground) else math.asin(self.links.crank / abs(ground))
         towards = cmath.phase(ground) - slide
         ends = [towards - lean, towards + lean]
-        # Extremes of the sine lie inside the swing only if the rocker passes the perpendicular to the slide.
+        # The sine has an extreme inside the swing only if the rocker passes the perpendicular to the slide.
         ends += [
             end for end in (0.5 * math.pi, -0.5 * math.pi) if abs(math.remainder(end - towards, 2 * math.pi)) < lean
         ]
@@ -209,11 +213,11 @@ class GivenQuickReturn(GivenByDimensions):
         # Two rocker angles have this sine, and each may have two crank positions.
         for turn in (math.asin(sine), math.pi - math.asin(sine)):
             rocker = cmath.rect(1.0, slide + turn)
-            # A lies on the rocker's ray from O4, at the crank's length from O2: intersect ray and circle.
+            # A lies on the ray of the rocker from O4, at the crank's length from O2: intersect the ray and the circle.
             pivot = ground / rocker
             square = self.links.crank**2 - pivot.imag**2
             for root in (math.sqrt(square), -math.sqrt(square)) if square >= 0.0 else ():
-                # The crank pin must be on the ray itself, not on its continuation behind O4.
+                # The crank pin must be on the ray itself, not on its extension behind O4.
                 if pivot.real + root > 0.0:
                     angles.append(cmath.phase((root - 1j * pivot.imag) * rocker))
         return angles

@@ -24,7 +24,7 @@ def _is_blank(value: object) -> bool:
 def optional_field(description: str | None = None, alias: str | None = None) -> Any:
     """Return a field of an answer that is left out if it has no value.
 
-    ``alias`` is its name in JSON if that is no Python identifier.
+    ``alias`` is its name in JSON, for names that are not Python identifiers.
     """
     return Field(default=None, exclude_if=_is_blank, description=description, alias=alias)
 
@@ -52,7 +52,7 @@ class Verification(Answer):
 
     @classmethod
     def from_checks(cls, checks: list[Check]) -> Self:
-        """Return the verification that consists of these checks."""
+        """Return the verification with these checks; it passed if all of them passed."""
         return cls(passed=all(check.passed for check in checks), checks=checks)
 
 

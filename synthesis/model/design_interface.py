@@ -1,4 +1,4 @@
-"""Fields that the designs of all kinds share, for code that handles any design."""
+"""Interface of the fields that designs of all kinds share, for code that handles any design."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class AnyMechanism(Protocol):
 
 
 class AnyDesign(Protocol):
-    """A design of an answer, a model."""
+    """A design of an answer of any kind."""
 
     @property
     def mechanism(self) -> AnyMechanism:

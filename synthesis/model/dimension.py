@@ -1,7 +1,8 @@
-"""Dimensions of numbers, declared once: on the field that holds the number or on the check that compares it.
+"""Physical dimensions of numbers, declared on the field that holds the number or on the check that compares it.
 
-``Annotated[float, LENGTH]`` is a number in length units. The annotation may stand anywhere in a field's type, so that
-``list[Length]`` and ``Point | None`` have a dimension, too. A number without one is pure: a ratio, a count, a share.
+``Annotated[float, LENGTH]`` is a number in length units. The annotation may occur anywhere in a field's type, so that
+``list[Length]`` and ``Point | None`` have a dimension, too. A number without a dimension is a pure number, such as a
+ratio, a count or a share.
 Two dimensions depend on the problem: a *displacement* of a cam's follower is a length, or degrees of its arm; an
 *output* is the angle of a link or the position of a slider.
 """
@@ -104,16 +105,16 @@ Stiffness = Annotated[float, STIFFNESS]
 Torque = Annotated[float, TORQUE]
 Mass = Annotated[float, MASS]
 Unbalance = Annotated[float, UNBALANCE]
-"""A mass times its distance from the axis; g·mm, or in the consistent units."""
+"""Mass times its distance from the axis, g·mm or in the consistent units."""
 Grade = Annotated[float, GRADE]
-"""Balance quality grade G of ISO 21940, e ω: mm/s in any units."""
+"""Balance quality grade G of ISO 21940, the product e ω of eccentricity and speed; mm/s with any units."""
 Percent = Annotated[float, PERCENT]
 
 
 class DimensionedModel(BaseModel):
     """Base of every model whose numbers have dimensions: its JSON schema gives them as ``x-dimension``."""
 
-    # Building the validators of all kinds before the first job would lengthen a worker's start by a fifth.
+    # Deferred, because building the validators of all kinds would lengthen the start of a worker by a fifth.
     model_config = ConfigDict(defer_build=True)
 
     @classmethod
@@ -121,26 +122,26 @@ class DimensionedModel(BaseModel):
         schema = handler(core_schema)
         properties = handler.resolve_ref_schema(schema).get("properties", {})
         for name, dimension in collect_dimensions(cls).items():
-            # Schemas use the alias, the models the Python name.
+            # A schema uses the alias of a field, the model its Python name.
             properties[cls.model_fields[name].alias or name]["x-dimension"] = dimension.value
         return schema
 
 
 @cache
 def collect_dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
-    """Return the dimension of each field of a model that has one; fields that hold models have none.
+    """Return the dimensions of a model's fields by name, without fields that have none or that hold models.
 
     Raises
     ------
     TypeError
-        If a field holds numbers of two dimensions; it must be split.
+        If a field holds numbers of two dimensions, so that it must be split.
     """
     measured = {}
     for name, field in model.model_fields.items():
         of_field = {entry for entry in field.metadata if isinstance(entry, Dimension)} | set(
             _find_in_annotation(field.annotation)
         )
-        # Mixed dimensions in one field could not be converted to other units.
+        # A field with several dimensions could not be converted to other units.
         if len(of_field) > 1:
             raise TypeError(f"{model.__name__}.{name} measures {' and '.join(sorted(of_field))}: make two fields of it")
         for dimension in of_field:
@@ -149,7 +150,7 @@ def collect_dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
 
 
 def _find_in_annotation(annotation: object) -> Iterator[Dimension]:
-    """Yield the dimensions in a type: in its metadata, and in the members of unions and containers."""
+    """Yield the dimensions in a type annotation: in its metadata, and in the members of unions and containers."""
     for part in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
         if isinstance(part, Dimension):
             yield part

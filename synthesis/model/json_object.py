@@ -1,8 +1,8 @@
-"""The type of a JSON object, before a model has validated it."""
+"""Type of a JSON object before a model has validated it."""
 
 from __future__ import annotations
 
 from typing import Any
 
 JsonObject = dict[str, Any]
-"""Names and JSON values. Validated by pydantic where it enters, so that its values need no closer type."""
+"""JSON values by name. Pydantic validates them on input, so that the values need no narrower type."""

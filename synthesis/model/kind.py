@@ -12,11 +12,11 @@ from synthesis.model.mechanism_types import collect_models, list_mechanism_types
 from synthesis.model.problem import ProblemBase
 
 Progress = Callable[[float, str], None]
-"""Callback with the fraction done, 0 to 1, and a short message."""
+"""Callback that receives the completed share, 0 to 1, and a short message."""
 
 
 def scale_progress(progress: Progress, begin: float, end: float) -> Progress:
-    """Return a progress callback for a part of the work that begins and ends at these shares of the whole."""
+    """Return a progress callback for a part of the work, which begins and ends at the given shares of the whole."""
     return lambda share, message: progress(begin + (end - begin) * share, message)
 
 
@@ -46,7 +46,7 @@ Group = Literal[
 
 
 class NamedExample(NamedTuple):
-    """Example for the gallery: its name, its purpose, and one sentence on what it shows."""
+    """Example for the gallery: its name, its purpose, and a sentence that describes it."""
 
     name: str
     group: Group
@@ -54,14 +54,14 @@ class NamedExample(NamedTuple):
 
 
 class RatioCheck(NamedTuple):
-    """The check of the tolerance of a speed ratio, and the metric that it compares with the tolerance."""
+    """Names of the check of a ratio's tolerance, and of the metric that it compares with the tolerance."""
 
     check: str
     metric: str
 
 
 class TableColumns(NamedTuple):
-    """Columns of a table that states a problem: the list that its rows fill, and their required fields."""
+    """Columns of a table that states a problem: the list field that its rows fill, and the required columns."""
 
     field: str
     required: tuple[str, ...]
@@ -69,16 +69,16 @@ class TableColumns(NamedTuple):
 
 @dataclass(frozen=True)
 class TaskEasing(Generic[P]):
-    """Nearest-miss strategy of a kind whose task can be made gradually easier, if no design fulfils the whole task.
+    """Nearest-miss strategy of a kind whose task can be made gradually easier if no design fulfils it.
 
     Attributes
     ----------
     ease : callable
-        Returns the statement with its task scaled to a share, 0 to 1, of what is requested.
+        Returns the statement with its task reduced to a share, 0 to 1, of the requested task.
     list_reached : callable
-        Returns what an eased statement requests, as fields of :class:`synthesis.model.answer.Reachable`.
+        Returns the values that an eased statement requests, as fields of :class:`synthesis.model.answer.Reachable`.
     describe_reached : callable
-        Returns a sentence for the summary on what was reached, with a leading space, or an empty string.
+        Returns a sentence for the summary that describes the reached values, with a leading space, or an empty string.
     """
 
     ease: Callable[[P, float], P]
@@ -106,26 +106,27 @@ class Kind(Generic[P, R]):
         does not wait for the compiled kernels.
     warm_up : callable, optional
         Loads the kernels that most jobs need, in the time of one brief job. Every new worker calls it alongside its
-        first jobs. If left out, the examples of the kind are solved instead. When kernels are compiled ahead of time,
-        all examples are solved.
+        first jobs. Without it, the examples of the kind are solved instead. When kernels are compiled ahead of time,
+        all examples are solved in any case.
     verify : callable, optional
-        Measures a finished mechanism against a statement and returns the design, or None if it cannot be driven. It
-        shows how far designs of a relaxed statement are from the original statement.
+        Measures a finished mechanism against a statement and returns the design, or None if it cannot be driven. It is
+        used to measure how far designs of a relaxed statement are from the original one.
     nearer : callable, optional
-        Continues designs of a looser statement to designs of a stricter one, in a fraction of the time of a search, to
-        approach a limit that cannot be reached. Returns None for statements without continuation; those are searched.
+        Continues designs of a looser statement to designs of a stricter one, in a fraction of the time of a search. It
+        is used to approach a limit that cannot be reached. Returns None for statements that it does not support; these
+        are solved by a search.
     nearly : callable, optional
-        Measures a finished mechanism that satisfies only approximately what designs must satisfy exactly, for example
-        after rounding. Takes the statement, an exact design and the other mechanism, and returns the design of the
-        latter, or None if it cannot be driven.
-    gallery : tuple of Named
+        Measures a finished mechanism, for example a rounded one, that meets only approximately the targets that designs
+        must meet exactly. Takes the statement, an exact design and the mechanism, and returns the design of the
+        mechanism, or None if it cannot be driven.
+    gallery : tuple of NamedExample
         Examples with their names, in the order of the statement's examples.
     brief : callable, optional
         Whether solving a statement usually takes a fraction of a second. The service runs such jobs alongside long
         searches. By default no statement is brief.
     ratio_check : RatioCheck, optional
-        For kinds with an optional ``tolerance`` of a speed ratio. If no design is within it, the nearest miss is the
-        most accurate design without it.
+        For kinds with an optional ``tolerance`` of a speed ratio. If no design is within the tolerance, the nearest
+        miss is the most accurate design.
     easing : TaskEasing, optional
         For kinds whose task can be eased. If no design fulfils the task, the nearest miss is found by bisection of the
         share of the task. Needs ``verify``.
@@ -135,7 +136,7 @@ class Kind(Generic[P, R]):
         Returns statements, runnable like the examples, whose kernels no example calls. They are solved when kernels are
         compiled ahead of time.
     columns : TableColumns, optional
-        How a table with a header states a problem of this kind.
+        Columns of a table with a header that states a problem of this kind.
     """
 
     name: str
@@ -156,17 +157,17 @@ class Kind(Generic[P, R]):
 
     @property
     def mechanisms(self) -> list[str]:
-        """Types of mechanisms that its designs can have, in the order of the models of its answer."""
+        """Types of mechanisms that designs of this kind can have, in the order of the models of its answer."""
         designs = collect_models(self.result.model_fields["designs"].annotation)
         return [name for design in designs for name in list_mechanism_types(design)]
 
     @property
     def metrics(self) -> list[str]:
-        """Names of the metrics of its designs, in the order of the models of its answer."""
+        """Names of the metrics of designs of this kind, in the order of the models of its answer."""
         designs = collect_models(self.result.model_fields["designs"].annotation)
         measured = [model for design in designs for model in collect_models(design.model_fields["metrics"].annotation)]
         named = [field.alias or name for model in measured for name, field in model.model_fields.items()]
-        # Designs of different models share metrics; keep the first of each name.
+        # Designs of different models share metrics; list each name once.
         return list(dict.fromkeys(named))
 
     @property
@@ -180,4 +181,4 @@ class Kind(Generic[P, R]):
 
 
 AnyKind = Kind[Any, Any]
-"""A kind of which neither the statement nor the answer is known."""
+"""A kind of problem with any statement and any answer."""

@@ -1,4 +1,4 @@
-"""Types of mechanisms in the field ``mechanism`` of a model, read from the model itself."""
+"""Types of mechanisms that the field ``mechanism`` of a model can contain, derived from its annotation."""
 
 from __future__ import annotations
 

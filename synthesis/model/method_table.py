@@ -1,4 +1,4 @@
-"""Table of the methods of a kind: the first one that applies to a statement solves it."""
+"""Table of the methods of a kind, of which the first that applies to a statement solves it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Method(Generic[P, R]):
     Attributes
     ----------
     applies : callable
-        Whether the method solves a statement that no row above solves.
+        Whether the method applies to a statement to which no earlier row applies.
     solve : callable
         Solves such a statement.
     """
@@ -29,5 +29,5 @@ class Method(Generic[P, R]):
 
 
 def solve_by_first(methods: Sequence[Method[P, R]], problem: P, progress: Progress) -> R:
-    """Solve a statement by the first method that applies; the last row of a table applies to all that are left."""
+    """Solve a statement by the first method that applies; the last row of a table must apply to all that are left."""
     return next(method for method in methods if method.applies(problem)).solve(problem, progress)

@@ -1,7 +1,7 @@
 """Parts of the statement of every problem, for all kinds.
 
 A statement can be well-formed and still contradict itself, for example by two equal positions, or by more choices than
-degrees of freedom. Each kind lists such contradictions by field in ``contradictions``.
+degrees of freedom. Each kind lists such contradictions by field (:meth:`ProblemBase.find_contradictions`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ CANCELLATION_TOLERANCE = 1e-10
 """Share of the coordinates below which a length has lost most of its digits to cancellation."""
 
 MIN_MAGNITUDE = 1e-30
-"""Magnitude below which a number is read as 0: it is rounding noise, and products of a few such numbers underflow."""
+"""Magnitude below which a number is read as 0. Such numbers are rounding noise, and products of a few underflow."""
 
 
 def _flush_tiny(number: object) -> object:
@@ -27,7 +27,7 @@ def _flush_tiny(number: object) -> object:
 
 
 Sizable = BeforeValidator(_flush_tiny)
-"""Validator for numbers with bounds of their own that replaces negligible values by 0."""
+"""Validator that replaces negligible values by 0, for numbers with bounds of their own."""
 
 Number = Annotated[float, Field(strict=True, ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE, allow_inf_nan=False), Sizable]
 NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=MAX_MAGNITUDE, allow_inf_nan=False), Sizable]
@@ -41,14 +41,14 @@ Point = Annotated[tuple[Number, Number], LENGTH]
 
 
 class Contradiction(NamedTuple):
-    """An error in a well-formed statement: the field (JSON pointer below the problem) and a message."""
+    """An error in a well-formed statement: the field (JSON pointer relative to the problem) and a message."""
 
     path: str
     detail: str
 
 
 class ContradictionError(ValueError):
-    """Raised if a solver gets a problem that contradicts itself; carries the :class:`Contradiction`."""
+    """Raised if a problem to be solved contradicts itself; carries the :class:`Contradiction`."""
 
     def __init__(self, contradiction: Contradiction) -> None:
         self.contradiction = contradiction
@@ -63,7 +63,8 @@ class Statement(DimensionedModel):
     def find_changed_fields(self) -> set[str]:
         """Return the fields that have a value other than their default.
 
-        ``model_fields_set`` does not do: a job shows its problem with all defaults, and a client may post that again.
+        ``model_fields_set`` does not suffice: a job shows its problem with all defaults, and a client may post that
+        problem again.
         """
         fields = type(self).model_fields
         return {name for name in self.model_fields_set if getattr(self, name) != fields[name].default}
@@ -125,12 +126,12 @@ class ProblemBase(Statement):
         return False
 
     def find_contradictions(self) -> list[Contradiction]:
-        """Return contradictions that no single field shows."""
+        """Return contradictions that the validation of single fields cannot find."""
         return []
 
     def require_consistent(self) -> None:
         """Raise the first contradiction, if there is one."""
         contradictions = self.find_contradictions()
         if contradictions:
-            # One message at a time; the client corrects it and sends again.
+            # The first contradiction suffices for an exception.
             raise ContradictionError(contradictions[0])

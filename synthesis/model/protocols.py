@@ -53,7 +53,7 @@ class SkeletonMechanism(Protocol):
 
 @runtime_checkable
 class HasReferenceAngle(Protocol):
-    """A mechanism whose dimensions contain the input angle of its skeleton; others are at it already."""
+    """A mechanism whose dimensions contain the input angle of its skeleton; for others the skeleton determines it."""
 
     @property
     def reference_input_angle(self) -> float:

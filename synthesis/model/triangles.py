@@ -1,4 +1,4 @@
-"""Triangulation of outlines."""
+"""Triangulation of polygons."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ depending on the last digits of their corners."""
 
 
 def triangulate_polygon(corners: Complex) -> Complex:
-    """Triangulate a polygon between its own corners; complex, shape (k, 3).
+    """Triangulate a polygon without additional corners; return the triangles, complex, shape (k, 3).
 
     An outline that touches itself by rounding is split there. If the triangulation fails, the convex hull is used.
     """
@@ -22,7 +22,7 @@ def triangulate_polygon(corners: Complex) -> Complex:
     for turn in TRIAL_ROTATIONS:
         turned = corners * np.exp(1j * turn)
         shape = Polygon(np.stack([turned.real, turned.imag], axis=1))
-        # A zero-width buffer splits an outline that touches itself.
+        # A buffer of width 0 splits an outline that touches itself.
         shape = shape if shape.is_valid else shape.buffer(0.0)
         try:
             parts = get_parts(constrained_delaunay_triangles(shape))

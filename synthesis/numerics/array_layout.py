@@ -1,6 +1,6 @@
 """Names for the parts of one-dimensional arrays that pass many numbers to a compiled kernel at once.
 
-A kernel cannot read the attributes of a layout. Modules therefore take its indices and slices into constants, which
+A kernel cannot read the attributes of a layout. Modules therefore assign its indices and slices to constants, which
 kernels see as literals:
 
     LIMITS = ArrayLayout(min_sine=1, boxes=8)
@@ -18,12 +18,12 @@ class ArrayLayout:
     first : int
         Index of the first part. A layout that continues another one begins at the other one's ``size``.
     **widths : int
-        Number of entries of each part, in their order.
+        Number of entries of each part, in order.
 
     Attributes
     ----------
     size : int
-        Index behind the last part: the length of the array, unless something of variable length follows.
+        Index after the last part: the length of the array, unless a part of variable length follows.
 
     Raises
     ------

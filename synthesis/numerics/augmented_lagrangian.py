@@ -1,4 +1,4 @@
-"""Constrained least squares by the augmented Lagrangian: descents are repeated until the limits hold to rounding.
+"""Constrained least squares by the augmented Lagrangian method: descents repeat until the limits hold to rounding.
 
 The method minimizes half the sum of squared residuals under inequalities g(x) ≥ 0 and equations h(x) = 0 (Nocedal &
 Wright, *Numerical Optimization*, 2nd ed., secs. 10.3, 17.3). With multipliers λ and a weight w each limit adds one
@@ -7,7 +7,7 @@ residual to the problem of :mod:`synthesis.numerics.levenberg`,
     √w (λ/w − g)   where it is positive,        √w (λ/w − h),
 
 and between descents λ becomes max(0, λ − w g), or λ − w h. The cost stays a sum of squares. The multipliers converge
-to the forces of the limits, so that the limits hold to rounding in the end although w stays moderate.
+to the Lagrange multipliers of the limits, so that the limits hold to rounding in the end although w stays moderate.
 
 The values g and h are called *margins*. A problem keeps them at the end of its ``state``, one for each multiplier, and
 appends their rows by :func:`append_limit_rows`. A limit that was not given has an infinite margin.
@@ -29,7 +29,7 @@ VIOLATION_TOLERANCE = 1e-11
 """Violation of a limit (in task sizes, or as a share of a length) that counts as rounding."""
 
 MAX_ROUNDS, MAX_STEPS = 20, 300
-"""Maximum number of descents, and of steps of each: a problem of a few unknowns that needs more has no minimum."""
+"""Maximum number of descents, and of steps in each: a problem of a few unknowns that needs more has no minimum."""
 
 GRADIENT_TOLERANCE = 1e-14
 """Relative decrease of the cost at which a descent ends: see :func:`synthesis.numerics.levenberg.descend`."""
@@ -129,7 +129,7 @@ def descend_constrained(
     rows, x, points, setting, state, most
         As for :func:`synthesis.numerics.levenberg.descend`.
     limits, equations : int
-        Number of limits, and how many of them, the last, are equations.
+        Number of limits, and of equations among them, which come last.
     weight : float
         Initial w.
     rounds, steps : int
@@ -155,7 +155,7 @@ def descend_constrained(
         if worst <= VIOLATION_TOLERANCE:
             break
         if worst > SLOW_DECREASE * before:
-            # Multipliers are forces: they are kept when the weight changes.
+            # Multipliers estimate those of the constrained minimum, so they are kept when the weight changes.
             multipliers[limits] *= WEIGHT_INCREASE
         before = worst
     # Evaluate once more with the limits switched off: the reported cost must not contain their penalty.
@@ -164,6 +164,6 @@ def descend_constrained(
     if m < 0:
         return _IMPOSSIBLE
     ended[0] = compute_half_square(residuals, m)
-    # The last decade is forgiven: an update in the last round may have come close without reaching the tolerance.
+    # Accept ten times the tolerance: an update in the last round may have come close without reaching it.
     end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
     return end

@@ -8,7 +8,7 @@ box [l_j, r_j] × [d_j, u_j] if
 By Helly's theorem on a line such an o exists if and only if no two joints are farther from each other than their boxes
 permit,
 
-    Re(w (p_j − p_k)) ≤ r_j − l_k,       Im(w (p_j − p_k)) ≤ u_j − d_k        for all j and k,
+    Re(w (p_j − p_k)) ≤ r_j − l_k,       Im(w (p_j − p_k)) ≤ u_j − d_k        for all j and k.
 
 These are half-planes of w, and their intersection is a convex polygon. It is connected, so that it contains all sizes
 |w| between the size of its nearest point and that of its farthest corner. A linkage with limited size fits if and only
@@ -29,11 +29,11 @@ ROUNDING_TOLERANCE = 1e-12
 """Tolerance of a half-plane for the rounding of its corners, as a share of the size of boxes and linkage."""
 
 END_DISTANCE_SHARE = 0.1
-"""If the preferred size does not fit: distance of the chosen size from the nearer end, as a share of the range of
-logarithms."""
+"""Distance of the chosen size from the nearer end of the fitting range, as a share of the range of logarithms, if the
+preferred size does not fit."""
 
 MIN_SIZE_SHARE = 0.8
-"""Minimum size to choose, as a share of the maximum size that fits: there is no reason to make a linkage smaller."""
+"""Minimum size to choose, as a share of the maximum fitting size: there is no reason to make a linkage smaller."""
 
 WIDENING_SHARE = 1e-6
 """Relative accuracy of the smallest widening of the boxes with which the linkage fits."""
@@ -70,7 +70,7 @@ class _Directions(NamedTuple):
 def place_in_boxes(
     points: Complex, boxes: Boxes, least: float, most: float, preferred: complex, *, turned: bool = True
 ) -> Placement:
-    """Place a linkage within its boxes if it fits, otherwise where it extends least beyond them.
+    """Place a linkage within its boxes if it fits, otherwise where it extends beyond them by the smallest amount.
 
     Parameters
     ----------
@@ -88,10 +88,10 @@ def place_in_boxes(
     Returns
     -------
     Placement
-        In the middle of the possible positions. If ``least`` exceeds ``most``, no size fits and the linkage gets the
-        geometric mean of both.
+        The middle of the fitting positions. If ``least`` exceeds ``most``, no size fits, and the linkage gets the
+        geometric mean of both as its size.
     """
-    # No size is permitted: report the least bad placement with a size between the contradictory limits.
+    # No size is permitted: report a placement with a size between the contradictory limits.
     if least > most:
         between = math.sqrt(least * most) if most > 0.0 else least
         return place_in_boxes(points, boxes, between, between, preferred, turned=turned)._replace(fits=False)
@@ -165,8 +165,8 @@ def _mark_feasible(planes: _Directions, w: Complex, slack: float) -> NDArray[np.
 
 
 def _bound_sizes(planes: _Directions) -> tuple[float, float] | None:
-    # Without half-planes every size fits.
     """Return the minimum and maximum |w| of the polygon, or None if it is empty."""
+    # Without half-planes every size fits.
     if not len(planes.normals):
         return 0.0, math.inf
     first, second = np.triu_indices(len(planes.normals), 1)
@@ -201,7 +201,7 @@ def _choose_size(low: float, high: float, preferred: float) -> float:
     if low <= preferred <= high:
         return preferred
     if preferred > high:
-        # Away from the very end, where only one exact placement fits.
+        # Keep away from the end itself, where only a single placement fits.
         low = max(low, MIN_SIZE_SHARE * high)
         return high * math.exp(END_DISTANCE_SHARE * math.log(low / high))
     high = min(high, low / MIN_SIZE_SHARE)

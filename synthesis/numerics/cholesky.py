@@ -1,4 +1,4 @@
-"""In-place Cholesky solver for the thousands of small positive definite systems of a descent."""
+"""In-place Cholesky solver for the small positive definite systems of a descent, of which there are thousands."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def solve_positive(matrix: Real, right: Real) -> bool:
     Parameters
     ----------
     matrix : float64, shape (n, n)
-        A; only its lower triangle is read.
+        Matrix A; only its lower triangle is read.
     right : float64, shape (n,)
-        r.
+        Right side r; replaced by the solution.
 
     Returns
     -------

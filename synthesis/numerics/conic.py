@@ -39,7 +39,7 @@ class ConeRows(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """Minimizer, its value, and a lower bound of the value from the dual; valid if ``status`` is "solved".
+    """Minimizer, minimum, and a lower bound of the minimum from the dual; valid if ``status`` is "solved".
 
     At reduced accuracy the bound is −∞, and a program that seems infeasible or unbounded counts as failed.
     """
@@ -51,8 +51,8 @@ class Solution(NamedTuple):
 
 
 SOLVER_SETTINGS: tuple[dict[str, float | bool], ...] = ({}, {"equilibrate_enable": False}, {"max_step_fraction": 0.95})
-"""Settings to try in turn until the solver reaches full accuracy: some programs stall with one of them, none with all.
-"""
+"""Settings to try in turn until the solver reaches full accuracy: some programs stall with one of them, but no known
+program with all."""
 
 
 def solve_conic_program(cost: Real, rows: Sequence[ConeRows]) -> Solution:
@@ -82,7 +82,7 @@ def solve_conic_program(cost: Real, rows: Sequence[ConeRows]) -> Solution:
         # Only a solution of full accuracy has a dual value that bounds the minimum.
         dual = float(found.obj_val_dual) if reached == "Solved" else -np.inf
         solution = Solution(np.array(found.x), float(found.obj_val), dual, STATUSES.get(reached, "failed"))
-        # Infeasible and unbounded are final results, too.
+        # "Infeasible" and "unbounded" are final results, too.
         if reached in STATUSES and reached != "AlmostSolved":
             return solution
         # Remember the best inaccurate result: an almost solved program is better than a failed one.

@@ -5,8 +5,8 @@ Known solutions at parameters p₀ are followed to p₁ along
 
     p(t) = (1 − t) p₀ + t p₁ + t (1 − t) b,    0 ≤ t ≤ 1,
 
-where b bends the path: with a random complex b (or generic p₀) no solution meets another one before t = 1, except on a
-set of probability zero (Morgan & Sommese 1989, doi:10.1016/0096-3003(89)90099-4). Every path is followed separately.
+where b bends the path: with a random complex b (or generic p₀) no two solutions meet before t = 1, with probability one
+(Morgan & Sommese 1989, doi:10.1016/0096-3003(89)90099-4). Every path is followed separately.
 A fourth-order Runge–Kutta step of dy/dt = −J⁻¹ f_p ṗ predicts and Newton's method corrects. The first Newton step
 shows the error of the prediction (∝ h⁵) and so sets the next step h.
 
@@ -43,7 +43,7 @@ SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECT
 """The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
 
 System = Callable[[Complex, Complex, Complex, Complex, Complex, Complex, Complex, Complex], int]
-"""The same for a type checker."""
+"""The same type for a type checker."""
 
 END_REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
 """Status of a path's end; only :data:`END_REACHED` is a solution."""
@@ -69,21 +69,21 @@ OVERFLOW_LIMIT, UNDERFLOW_LIMIT = 1e300, 1e-300
 """Squared size above which a path has diverged, and a number that keeps quotients by zero defined."""
 
 MIN_REMAINING_SHARE = 0.2
-"""Share of the progress that each further run of all paths leaves to the runs after it, which are seldom needed."""
+"""Share of the remaining progress that each run of all paths leaves to later runs, which are seldom needed."""
 
 CHUNK_SIZE = 16
 """Number of paths that a thread takes at a time: a few milliseconds of work."""
 
 
 class CompiledSystem(NamedTuple):
-    """A system of equations, as the tracker needs it.
+    """A system of equations in the form that the tracker needs.
 
     Attributes
     ----------
     evaluate : compiled function of type :data:`SYSTEM`
         The system; see the module's description.
     groups : int, shape (n,)
-        Group number of each unknown; adjacent unknowns of one group share a scale, by which steps are measured.
+        Group number of each unknown. Adjacent unknowns of one group share a scale, to which steps are relative.
     scratch : int
         Number of complex numbers that ``evaluate`` needs as ``work``.
     """
@@ -94,7 +94,7 @@ class CompiledSystem(NamedTuple):
 
 
 class ParameterPath(NamedTuple):
-    """How the parameters move: p₀, p₁ and b, complex, shape (parameters,)."""
+    """Path of the parameters: p₀, p₁ and b, complex, shape (parameters,)."""
 
     start: Complex
     end: Complex
@@ -111,7 +111,7 @@ class PathEnds(NamedTuple):
     status : int, shape (paths,)
         :data:`END_REACHED`, or the reason why there is no solution.
     steps : int, shape (paths,)
-        Number of steps, refused ones included.
+        Number of steps, rejected ones included.
     """
 
     y: Complex
@@ -200,7 +200,7 @@ def _refine(
 
 
 class _Parameters(NamedTuple):
-    """The path of the parameters, and where they and their errors and derivatives are written."""
+    """The path of the parameters, and buffers for their values, rounding errors and derivatives."""
 
     start: Complex
     end: Complex
@@ -211,7 +211,7 @@ class _Parameters(NamedTuple):
 
 
 class _Buffers(NamedTuple):
-    """Where a system writes its two steps, and its scratch."""
+    """Buffers for the two steps that a system writes, and its scratch."""
 
     newton: Complex
     tangent: Complex
@@ -264,7 +264,7 @@ def _correct(
         moved = _compute_relative_size(newton, at, groups)
         if correction == 0:
             missed = moved
-        # A large correction may lead to a neighbouring path: refuse the step.
+        # A large correction may lead to a neighbouring path: reject the step.
         if not moved <= tolerance:
             break
         for k in range(at.size):
@@ -329,7 +329,7 @@ def _follow(
             h *= min(max(scale, 0.5), grown)
             grown = 2.5
         else:
-            # After a refused step the next accepted one must not grow, or it would fail at the same place.
+            # After a rejected step the next accepted one must not grow, or it would fail at the same place.
             h *= min(max(scale, 0.2), 0.6)
             grown = 1.0
     moved = _refine(system, groups, y, low, p, p_low, dp, newton, tangent, work)
@@ -404,7 +404,7 @@ def follow(
     y : complex, shape (paths, n)
         Solutions at the start of the path.
     path : ParameterPath
-        The way of the parameters.
+        Path of the parameters.
     tolerance : float
         Maximum relative error of a prediction. A smaller one takes more steps but seldom jumps to another path.
     most_steps : int
@@ -462,7 +462,7 @@ def refine(system: CompiledSystem, y: Complex, low: Complex, p: Complex) -> tupl
     y, low : complex, shape (solutions, n)
         The refined solutions and their rounding errors.
     moved : float, shape (solutions,)
-        Relative size of the last step. If it has converged, this is at rounding level times the condition number.
+        Relative size of the last step. After convergence it is about the rounding error times the condition number.
     """
     y, low = np.array(y, np.complex128, order="C"), np.array(low, np.complex128, order="C")
     moved = np.empty(len(y))

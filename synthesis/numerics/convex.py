@@ -16,7 +16,7 @@ def import_cvxpy() -> ModuleType:
 def solve_convex_program(cost: object, constraints: Sequence[object]) -> bool:
     """Solve a cvxpy program and return whether it has a solution.
 
-    A solution of reduced accuracy counts, since callers measure the result themselves.
+    A solution of reduced accuracy counts as one, since callers measure the result themselves.
     """
     cp = import_cvxpy()
     problem = cp.Problem(cp.Minimize(cost), constraints)

@@ -1,4 +1,4 @@
-"""Gaussian elimination for small dense systems in compiled kernels: complex ones; `factor` and `solve` take real ones.
+"""Gaussian elimination for small dense complex systems in compiled kernels; `factor` and `solve` also take real ones.
 
 A call of LAPACK costs more than the arithmetic of a system of ten unknowns, and it allocates memory.
 """
@@ -83,7 +83,7 @@ def reduce(matrix: Complex) -> bool:
             for c in range(k, width):
                 matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
         pivot = matrix[k, k]
-        # The reciprocal by hand: a complex division guards against overflow and is several times slower.
+        # Compute the reciprocal explicitly: a complex division guards against overflow and is several times slower.
         size = 1.0 / (pivot.real * pivot.real + pivot.imag * pivot.imag)
         inverse = complex(pivot.real * size, -pivot.imag * size)
         matrix[k, k] = inverse

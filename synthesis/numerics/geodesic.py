@@ -1,7 +1,7 @@
 """Compiled Levenberg–Marquardt method with geodesic acceleration, for minima at the end of curved valleys.
 
 If many combinations of the unknowns hardly change the residuals r, the minimum lies in a curved valley that is far
-longer than it is wide. A step along its tangent v leaves the valley and is refused. With the second derivative of the
+longer than it is wide. A step along its tangent v leaves the valley and is rejected. With the second derivative of the
 residuals along v a step follows the bend (Transtrum & Sethna, arXiv:1201.5885, 2012):
 
     [J; √μ D] v = −[r; 0],     [J; √μ D] a = −[r_vv; 0],     δ = v + a/2,
@@ -28,7 +28,7 @@ FIRST_DAMPING, MIN_DAMPING, MAX_DAMPING = 1e-3, 1e-20, 1e8
 """Damping μ: initial value, minimum, and the value above which the descent has stalled."""
 
 DAMPING_DECREASE, DAMPING_INCREASE = 5.0, 2.0
-"""Factors by which the damping falls after an accepted step and rises after a refused one."""
+"""Factors by which the damping falls after an accepted step and rises after a rejected one."""
 
 MAX_ACCELERATION_RATIO = 0.75
 """Maximum ratio α of acceleration to velocity, both scaled by D."""
@@ -40,7 +40,7 @@ MAX_STEP = 1.0
 """Maximum change of an unknown in one step."""
 
 ROUNDING_COST = 1e-29
-"""Cost that is pure rounding, as residuals are scaled to the size of the task."""
+"""Cost below which it is pure rounding, since residuals are scaled to the size of the task."""
 
 MIN_RELATIVE_GAIN, MAX_STALLED_STEPS = 1e-9, 5
 """Relative gain at or below which a step counts as idle, and the number of consecutive idle steps that end the descent.
@@ -51,8 +51,8 @@ MIN_RELATIVE_GAIN, MAX_STALLED_STEPS = 1e-9, 5
 def _decompose_qr(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
     """Decompose a matrix in place by Householder reflections; return whether it has full rank.
 
-    Afterwards R stands above the diagonal and its diagonal in ``heads``; the reflection vectors stand on and below the
-    diagonal.
+    Afterwards R is stored above the diagonal and its diagonal in ``heads``. The reflection vectors are stored on and
+    below the diagonal.
     """
     for j in range(columns):
         square = 0.0
@@ -96,6 +96,7 @@ def _solve_qr(matrix: Real, rows: int, columns: int, heads: Real, right: Real, s
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _compute_scaled_norm(scale: Real, step: Real) -> float:
+    """Return the norm |D step|."""
     total = 0.0
     for j in range(step.size):
         total += (scale[j] * step[j]) ** 2
@@ -104,7 +105,7 @@ def _compute_scaled_norm(scale: Real, step: Real) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _list_open_unknowns(jacobian: Real, m: int, open_: Integers) -> int:
-    """Write the numbers of the unknowns with a column that is not 0; return their count."""
+    """Write the indices of the unknowns whose column is not zero; return their count."""
     # Columns of zeros belong to unknowns that the problem holds fixed; the QR decomposition must not contain them.
     free = 0
     for j in range(len(open_)):
@@ -121,7 +122,7 @@ def _list_open_unknowns(jacobian: Real, m: int, open_: Integers) -> int:
 def _fill_damped_matrix(
     jacobian: Real, m: int, open_: Integers, free: int, damping: float, scale: Real, matrix: Real
 ) -> None:
-    """Write the columns of the open unknowns over the damping; ``scale`` has their largest norms so far."""
+    """Write the columns of the open unknowns above the damping rows; ``scale`` has their maximum norms so far."""
     for j in range(free):
         norm = 0.0
         for i in range(m):
@@ -151,7 +152,7 @@ def _write_bending(
 def _solve_velocity(
     matrix: Real, m: int, free: int, heads: Real, residuals: Real, right: Real, velocity: Real
 ) -> float:
-    """Solve for the velocity by the decomposed matrix, and return the magnitude of its largest component."""
+    """Solve for the velocity with the decomposed matrix, and return the magnitude of its largest component."""
     right[: m + free] = 0.0
     right[:m] = -residuals[:m]
     _solve_qr(matrix, m + free, free, heads, right, velocity)
@@ -182,7 +183,7 @@ def follow_valley(
     rows, x, points, setting, multipliers, state, most
         As for :func:`synthesis.numerics.levenberg.descend`.
     steps : int
-        Maximum number of steps to try, refused ones included.
+        Maximum number of steps to try, rejected ones included.
     """
     n = x.size
     residuals, jacobian = np.zeros(most), np.zeros((most, n))
@@ -197,7 +198,7 @@ def follow_valley(
     matrix, right = np.zeros((most + free, free)), np.zeros(most + free)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(steps):
-        # Any of the three ends the descent: rounding level, no acceptable damping, or no progress.
+        # The descent ends at rounding level, without an acceptable damping, or without progress.
         if cost < ROUNDING_COST or damping > MAX_DAMPING or idle >= MAX_STALLED_STEPS:
             break
         _fill_damped_matrix(jacobian, m, open_, free, damping, scale, matrix)

@@ -1,6 +1,6 @@
 """Compiled Levenberg–Marquardt method for thousands of small descents per second.
 
-The method minimizes half the sum of squared residuals from a starting point. Limits are residuals, too;
+The method minimizes half the sum of squared residuals from a starting point. Limits are residuals, too, and
 :mod:`synthesis.numerics.augmented_lagrangian` enforces them.
 
 A problem is one compiled function that writes the residuals and their Jacobian:
@@ -13,10 +13,10 @@ accepted steps. All functions have the type :data:`ROWS`, so that the method is 
 
 With r the residuals, J their Jacobian, A = JᵀJ and g = Jᵀr, a step solves
 
-    (A + μ D) δ = −g,        D = the greatest diagonal of A so far (Moré 1978, doi:10.1007/BFb0067700),
+    (A + μ D) δ = −g,        D = the maximum diagonal of A so far (Moré 1978, doi:10.1007/BFb0067700),
 
 and its predicted gain is −δᵀ(g + A δ/2). With ρ the ratio of the actual to the predicted gain, an accepted step
-multiplies the damping μ by max(1/3, 1 − (2ρ − 1)³); refused steps multiply it by 2, 4, 8 … in turn (Nielsen 1999,
+multiplies the damping μ by max(1/3, 1 − (2ρ − 1)³); rejected steps multiply it by 2, 4, 8 … in turn (Nielsen 1999,
 IMM-REP-1999-05, sec. 3).
 """
 
@@ -40,7 +40,7 @@ ROWS = types.int64(VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
 """The type of a problem: x, points, setting, multipliers, state, residuals, jacobian."""
 
 Rows = Callable[[Real, Real, Real, Real, Real, Real, Real], int]
-"""The same for a type checker."""
+"""The same type for a type checker."""
 
 MIN_DAMPING, FIRST_DAMPING, MAX_DAMPING = 1e-15, 1e-3, 1e12
 """Damping μ: minimum, initial value, and the value above which the descent has stalled."""
@@ -49,7 +49,7 @@ MAX_STEP = 1.0
 """Maximum change of an unknown in one step; problems scale their unknowns so that this is a long step."""
 
 ZERO_COST = 1e-30
-"""Cost that is pure rounding, as residuals are scaled to the size of the task."""
+"""Cost below which it is pure rounding, since residuals are scaled to the size of the task."""
 
 MIN_SCALE = 1e-12
 """Minimum entry of D: an unknown that no residual depends on keeps its value."""
@@ -107,7 +107,7 @@ def _predict_gain(matrix: Real, gradient: Real, step: Real) -> float:
 def _damp_equations(matrix: Real, gradient: Real, damping: float, scale: Real, factor: Real, step: Real) -> None:
     """Write the damped normal equations: their lower triangle into ``factor``, the right side into ``step``.
 
-    ``scale`` has the largest diagonal so far, which damping is relative to.
+    ``scale`` is the maximum diagonal so far, relative to which the damping is measured.
     """
     for i in range(len(scale)):
         scale[i] = max(scale[i], matrix[i, i])
@@ -159,7 +159,7 @@ def descend(
     most : int
         Maximum number of rows.
     steps : int
-        Maximum number of steps, refused ones included.
+        Maximum number of steps, rejected ones included.
     tolerance : float
         The descent has converged when the cost decreases by less than this share in two consecutive steps.
 
@@ -189,7 +189,7 @@ def descend(
         if cost < ZERO_COST:
             return cost, _ZERO
         longest = _solve_step(matrix, gradient, damping, scale, factor, step)
-        # A matrix that is not positive definite to rounding needs much more damping: leave it in big steps.
+        # A matrix that is not positive definite to rounding needs much more damping: increase it in large steps.
         if longest < 0.0:
             damping *= 10.0
             if damping > MAX_DAMPING:
@@ -211,11 +211,11 @@ def descend(
             residuals, trial_residuals = trial_residuals, residuals
             jacobian, trial_jacobian = trial_jacobian, jacobian
             _build_normal_equations(residuals, jacobian, m, n, matrix, gradient)
-            # Two in turn, because one tiny gain may follow a badly damped step.
+            # Require two in succession, because a single tiny gain may follow a badly damped step.
             if small >= 2:
                 return cost, _COST
             continue
-        # The step was refused, but the predicted gain is mere rounding: the point is stationary to working precision.
+        # The step was rejected, but the predicted gain is only rounding: the point is stationary to working precision.
         if expected <= STEP_TOLERANCE * cost:
             return cost, _GRADIENT
         # A step below rounding cannot change the point.

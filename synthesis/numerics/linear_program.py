@@ -23,12 +23,12 @@ class LinearMinimum(NamedTuple):
 
 
 def solve_linear_program(cost: Real, rows: Real, limits: Real, low: Real, high: Real) -> LinearMinimum | None:
-    """Minimise cost · x subject to rows x ≤ limits and low ≤ x ≤ high.
+    """Minimize cost · x subject to rows x ≤ limits and low ≤ x ≤ high.
 
     Parameters
     ----------
     cost, low, high : float, shape (n,)
-        Bounds may be infinite.
+        Cost, and bounds of x, which may be infinite.
     rows : float, shape (m, n)
     limits : float, shape (m,)
 

@@ -22,7 +22,7 @@ DEFAULT_TOLERANCE = 1e-13
 """Relative change of cost or point below which a fit has converged: a few hundred rounding errors."""
 
 MAX_EVALUATIONS = 200
-"""Maximum number of evaluations; a start near a minimum takes ten or twenty."""
+"""Maximum number of evaluations; a start near a minimum needs ten or twenty."""
 
 _STATUS = {
     -1: Status.IMPOSSIBLE,

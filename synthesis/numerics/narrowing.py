@@ -3,7 +3,7 @@
 A shape x gives values e(x) at samples of a motion. The method finds the x for which the band from their minimum to
 their maximum is narrowest, while other values h(x) stay in a band of given width and others, g(x), are not negative:
 
-    minimise t  subject to  |e_i(x) − m| ≤ t,  |h_j(x) − n| ≤ w,  g_k(x) ≥ 0,  low ≤ x ≤ high.
+    minimize t  subject to  |e_i(x) − m| ≤ t,  |h_j(x) − n| ≤ w,  g_k(x) ≥ 0,  low ≤ x ≤ high.
 
 Each step replaces e, h, g by their tangents and bounds the step (Madsen, "An algorithm for minimax solution of
 overdetermined systems of non-linear equations", J. Inst. Math. Appl. 16 (1975) 321, doi:10.1093/imamat/16.3.321). For
@@ -22,9 +22,9 @@ from kinematics.arrays import Real
 from synthesis.numerics.linear_program import solve_linear_program
 
 VIOLATION_PENALTIES = (10.0, 1000.0)
-"""Penalties per unit of violation, in units of the values e. The first one lets steps cut corners. The second one is
-for shapes that then still violate a constraint; it exceeds the multipliers of useful designs: straightness to 1e-4
-costs about 50 times as much in the evenness of the velocity."""
+"""Penalties per unit of violation, in units of the values e. The first one lets steps pass through violations. The
+second one is for shapes that then still violate a constraint. It exceeds the multipliers of useful designs:
+straightness to 1e-4 costs about 50 times as much in the evenness of the velocity."""
 
 VIOLATION_TOLERANCE = 1e-6
 """Violation up to which a constraint counts as satisfied."""
@@ -39,14 +39,14 @@ CONVERGENCE_TOLERANCE = 1e-6
 """Relative gain below which the band counts as narrowest."""
 
 MIN_BAND = 1e-15
-"""Half width of a band that is pure rounding."""
+"""Half width of a band below which it is pure rounding."""
 
 MAX_STEPS = 40
-"""Maximum number of accepted steps, each a linear program or several; ten to twenty are usual."""
+"""Maximum number of accepted steps, each of one or several linear programs; ten to twenty are usual."""
 
 
 class ShapeValues(NamedTuple):
-    """Values of m shapes, the first axis; NaN for a shape that is no linkage.
+    """Values of m shapes, on the first axis; NaN for a shape that is no linkage.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ def _descend_with_penalty(
             tried = values((x + step)[None])
             tried_merit = _compute_merit(tried, half_limit, penalty)
             gain, hoped = merit - tried_merit[0], merit - predicted
-            # A tenth of the predicted gain is enough to accept a step; otherwise the trust region shrinks around it.
+            # A tenth of the predicted gain is enough to accept a step; otherwise the trust region shrinks.
             if np.isfinite(tried_merit[0]) and gain > 0.1 * hoped and hoped > 0.0:
                 break
             # Shrink relative to the step actually taken; 0 if even the prediction promises no gain, which ends the
@@ -175,7 +175,7 @@ def _compute_merit(values: ShapeValues, half_limit: float, penalty: float) -> tu
 
 
 def _compute_tangents(values: Callable[[Real], ShapeValues], x: Real) -> ShapeValues | None:
-    """Differentiate the values by each coordinate: shapes (n, k), (n, j), (n, q); None at the edge of the linkages."""
+    """Differentiate the values by each coordinate: shapes (n, k), (n, j), (n, q); None if a neighbour is no linkage."""
     h = DIFFERENCE_STEP * (1.0 + np.abs(x))
     around = values(np.concatenate([x + np.diag(h), x - np.diag(h)]))
     n = len(x)

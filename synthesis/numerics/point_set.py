@@ -29,7 +29,7 @@ class KnownPoints:
     Parameters
     ----------
     numbers : int
-        Complex numbers per point.
+        Number of complex numbers per point.
     share : float
         Relative tolerance: two points are the same if all their numbers agree to this share of the largest number.
     """

@@ -29,8 +29,8 @@ MAX_NEWTON_STEPS = 6
 """Maximum number of Newton steps; eigenvectors of simple roots already have ten digits or more."""
 
 IMAGINARY_TOLERANCE = 1e-4
-"""Imaginary part of a unit vector below which a real root is searched nearby. Of 16 digits in the data a double root
-keeps half, a triple root a third."""
+"""Imaginary part of a unit vector below which a real root is searched nearby. From data of 16 digits a double root
+keeps half of the digits, a triple root a third."""
 
 CLUSTER_TOLERANCE = 1e-5
 """Assumed radius of a cluster of roots that cannot be proved individually."""
@@ -40,7 +40,7 @@ ROUNDING_ERROR = 4e-15
 
 RESIDUAL_TOLERANCE = 1e-13
 """Residual up to which a real point counts as common to all quadrics without proof. Such a point is a double root,
-which data a few rounding errors away may or may not have."""
+which exists or disappears if the data change by a few rounding errors."""
 
 MIN_NORM = 1e-150
 """Substitute for a singular value that may be zero; its square does not underflow."""
@@ -107,7 +107,13 @@ def find_common_points(forms: Real, error: float = 0.0) -> CommonPoints:
 
 
 class _MonomialFrame(NamedTuple):
-    """Indices of monomials: of degree m in a solution, of degree m − 2 as multipliers, and of their products."""
+    """Indices that describe the linear equations of the monomials, for quadrics in m coordinates.
+
+    ``rows``, ``columns`` and ``twice`` list the products of two coordinates and their factors in a quadratic form,
+    ``shift`` is the index of each such product times a multiplier of degree m − 2, and ``lift`` that of a coordinate
+    times a monomial of degree m − 1. ``powers`` and ``lines`` are the indices of x_i^m and x_i^(m−1) x_j, ``first`` and
+    ``second`` two linear forms in general position.
+    """
 
     monomials: int
     rows: NDArray[np.intp]
@@ -123,6 +129,7 @@ class _MonomialFrame(NamedTuple):
 
 @cache
 def _build_frame(m: int) -> _MonomialFrame:
+    """Build the indices for m coordinates; see :class:`_MonomialFrame`."""
     place = {mono: k for k, mono in enumerate(combinations_with_replacement(range(m), m))}
     squares = list(combinations_with_replacement(range(m), 2))
     multipliers = list(combinations_with_replacement(range(m), m - 2))
@@ -165,7 +172,7 @@ def _refine_points(forms: Real, points: Numbers, error: float) -> CommonPoints:
     proved = apart & np.concatenate([real_alone, alone & (imaginary > radius)])
     kept: list[int] = []
     for k in np.flatnonzero(real_alone | (residual <= RESIDUAL_TOLERANCE)):
-        # ±x are the same projective point, hence the absolute value.
+        # ±x are the same projective point, so take the absolute value.
         gaps = [1.0 - abs(float(reals[k] @ reals[j])) for j in kept]
         if min(gaps, default=1.0) > DIRECTION_TOLERANCE:
             kept.append(int(k))
@@ -198,7 +205,8 @@ def _iterate_newton(forms: Real, points: Numbers) -> Numbers:
 
 
 def _certify_roots(forms: Real, points: Numbers, error: float) -> tuple[Real, NDArray[np.bool_], Real]:
-    """Apply the Newton–Kantorovich theorem at unit vectors: radius that contains a root, whether proved, and residual.
+    """Apply the Newton–Kantorovich theorem at unit vectors: return a radius that contains a root, whether it is proved,
+    and the residual.
 
     With K a Lipschitz constant of the Jacobian J and η = |J⁻¹f|, a root lies within 2η where K|J⁻¹|η ≤ 1/2
     (Kantorovich; Ortega & Rheinboldt, 12.6.2).

@@ -1,1 +1,1 @@
-"""Results of a search: selection and order of the designs, and the account of rejected candidates."""
+"""Results of a search: selection, order and measurement of the designs, and the log of rejected candidates."""

@@ -1,7 +1,7 @@
-"""Log of the candidates of a search: each is verified once and either accepted or counted by its reason of rejection.
+"""Log of the candidates of a search: each is accepted, or counted by its reason of rejection.
 
-All searches report ``candidates = accepted + all rejected``. Here this holds by construction, since a candidate is
-counted only when it is accepted or rejected.
+All searches report ``candidates = accepted + all rejected``. This holds by construction, since a candidate is counted
+only when it is accepted or rejected.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ DEFECT_REASONS = {
     "same_branch": "branch_defect",
     "visits_in_order": "order_defect",
 }
-"""Reasons of rejection by the failed check of the motion."""
+"""Reason of rejection by the name of a failed check of the motion."""
 
 LENGTH_REASONS = {"shortest_link": "link_length", "longest_link": "link_length"}
-"""Reasons of rejection by the failed check of lengths."""
+"""Reason of rejection by the name of a failed check of lengths."""
 
 NUMERICAL_REASONS = {"degenerate", "residual", "cannot_be_driven"}
-"""Reasons of numerical failure: a search that rejects candidates for one of them proves nothing."""
+"""Reasons that indicate a numerical failure: a search that rejects candidates for one of them proves nothing."""
 
 OUTRANKED_REASON = "outranked"
-"""Reason of sound candidates that are not driven or not listed because better ones are."""
+"""Reason for sound candidates that are not driven, or not listed, because enough better ones are."""
 
 
 Candidate = TypeVar("Candidate")
@@ -48,7 +48,7 @@ class CandidateLog(Generic[Design]):
     problem : ProblemBase
         The problem, with the number of designs, whether to include failed ones, and the seed.
     reasons : mapping, optional
-        Reasons of rejection by the first failed check; the reason of other checks is their own name.
+        Reason of rejection by the name of the first failed check; by default the name itself.
     undriven : str
         Reason of a candidate that cannot be driven at all.
 
@@ -59,7 +59,7 @@ class CandidateLog(Generic[Design]):
     accepted : int
         Number of accepted candidates. A candidate that can be driven in several ways may become several designs.
     rejected : Counter
-        Number of other candidates by reason.
+        Number of rejected candidates by reason.
     """
 
     def __init__(
@@ -89,9 +89,9 @@ class CandidateLog(Generic[Design]):
         verify: Callable[[Candidate], Design | str | None],
         enough: int | None = None,
     ) -> int:
-        """Verify candidates in order until ``enough`` designs have passed; return the number of verified candidates.
+        """Verify candidates in order until ``enough`` designs have passed; by default verify all of them.
 
-        ``verify`` returns a verdict as described at :meth:`insert_design`.
+        ``verify`` returns a verdict as described at :meth:`insert_design`. Return the number of verified candidates.
         """
         verified = 0
         # Candidates come best first, so the search may stop early.
@@ -105,17 +105,17 @@ class CandidateLog(Generic[Design]):
     def verify_best(
         self, best: Sequence[Candidate], covered: int, verify: Callable[[Candidate], Design | str | None]
     ) -> None:
-        """Verify the best of the ``covered`` candidates of an exhaustive search; they outrank the others."""
-        # An exhaustive search has seen the others and ranked them below.
+        """Verify the ``best`` of the ``covered`` candidates of an exhaustive search; count the others as outranked."""
+        # An exhaustive search has evaluated the others and ranked them below.
         self.reject(OUTRANKED_REASON, covered - len(best))
         self.verify_candidates(best, verify)
 
     def record_candidate(self, verdict: Design | str | None) -> None:
-        """Store and count one candidate."""
+        """Store and count one candidate by its verdict; see :meth:`insert_design`."""
         self.count(self.insert_design(verdict))
 
     def insert_design(self, verdict: Design | str | None) -> str:
-        """Store a design with those that passed or failed, without counting it.
+        """Store a design among those that passed, or those that failed, without counting it.
 
         Parameters
         ----------
@@ -131,7 +131,7 @@ class CandidateLog(Generic[Design]):
             return self._undriven
         if isinstance(verdict, str):
             return verdict
-        # Common constraints are expensive (forces, planes, yield): only designs that passed everything else pay.
+        # The shared constraints (forces, planes, yield) are expensive, so check them only if everything else passed.
         if verdict.verification.passed:
             judged = check_shared_constraints(self.stated, verdict)
             if judged is None:
@@ -157,7 +157,7 @@ class CandidateLog(Generic[Design]):
 
     def withdraw(self, kept: list[Design], reason: str) -> None:
         """Keep only ``kept`` of the passed designs; count the others as rejected for ``reason``."""
-        # The total stays the same: accepted becomes rejected.
+        # The total stays the same, because accepted candidates become rejected ones.
         withdrawn = len(self.passed) - len(kept)
         self.passed = kept
         self.accepted -= withdrawn
@@ -183,9 +183,14 @@ class CandidateLog(Generic[Design]):
         ordered: Callable[[list[Design]], list[Design]],
         different: Callable[[list[Design]], list[Design]] | None = None,
     ) -> list[Design]:
-        """Return the requested number of designs in order; failed designs come last, and only if requested.
+        """Return the designs of the answer, at most the requested number; failed designs last, if they are requested.
 
-        ``different`` drops designs that are nearly equal to an earlier one.
+        Parameters
+        ----------
+        ordered : callable
+            Sorts designs.
+        different : callable, optional
+            Drops designs that are nearly equal to an earlier one.
         """
         shown = ordered(self.passed)
         if self.stated.include_failed:
@@ -193,12 +198,12 @@ class CandidateLog(Generic[Design]):
         return (different(shown) if different else shown)[: self.stated.max_designs]
 
     def _complete_failed(self, failed: Design) -> Design:
-        """Return a failed design with the checks of its workspace, too."""
+        """Return a failed design, completed by the checks of its workspace."""
         # If the mechanism cannot be rebuilt, show the design without those checks.
         return check_workspace_of_design(self.stated, failed) or failed
 
     def build_search(self, method: str, *, complete: bool = False) -> Search:
-        """Return the counts in the form of the answer."""
+        """Return the counts in the form of the answer; ``complete`` claims that every solution was found."""
         return Search(
             method=method,
             complete=complete,

@@ -37,10 +37,13 @@ def select_within_tolerance(ranked: Iterable[Inexact], tolerance: float | None, 
 
 
 def select_pareto(by_size: Iterable[Candidate], error: Callable[[Candidate], Any]) -> list[Candidate]:
-    """Return the candidates, given in order of increasing size, that have a smaller error than all before them."""
+    """Return the Pareto set of error against size: the candidates with a smaller error than all before them.
+
+    The candidates are given in order of increasing size.
+    """
     front: list[Candidate] = []
     for candidate in by_size:
-        # Equal errors at a larger size are dominated, too.
+        # A candidate with an equal error and a larger size is dominated, too.
         if not front or error(candidate) < error(front[-1]):
             front.append(candidate)
     return front

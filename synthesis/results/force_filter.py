@@ -1,7 +1,8 @@
-"""Pre-filter: evaluate force limits for many linkages of one topology at once, by elimination.
+"""Pre-filter that evaluates force limits for many linkages of one topology at once.
 
-It serves searches that choose among many candidates before any is driven. A rejected linkage violates a limit at one of
-the evaluated positions. A linkage that passes is measured later by the general equations.
+It serves searches that choose among many candidates before any is driven. The forces are computed dyad by dyad
+(elimination). A rejected linkage violates a limit at one of the evaluated positions. A linkage that passes is measured
+later by the general equations.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.results.forces import STEP_COUNT, apply_link_shape
 
 FORCES_IN_CLOSED_FORM = ("drive_torque", "joint_force", "shaking_force", "shaking_moment", "power")
-"""Forces whose limits are evaluated; the joint force index needs a computation of its own."""
+"""Forces whose limits are evaluated here; the joint force index needs a computation of its own."""
 
 
 def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) -> NDArray[np.bool_]:
@@ -44,7 +45,7 @@ def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) 
     every = np.ones(mechanism.shape, np.bool_)
     slides = mechanism.has_slide_input
     if stated is None or not limits.keys() & set(FORCES_IN_CLOSED_FORM) or not every.size:
-        # Nothing to evaluate: let the general equations decide later.
+        # There is nothing to evaluate; the general equations decide later.
         return every
     speed = stated.speed if slides else stated.speed_rpm
     machine = (
@@ -52,7 +53,7 @@ def select_bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) 
         if speed is None
         else build_machines(apply_link_shape(stated, mechanism.links), mechanism, problem.length_unit)
     )
-    # Undecidable here; the designs are measured later in any case.
+    # This block cannot be decided by elimination; the designs are measured later in any case.
     if speed is None or machine is None or not is_built_of_dyads(machine):
         return every
     pace = speed if slides else speed * math.tau / 60.0

@@ -1,4 +1,4 @@
-"""Forces of designs, for the block ``dynamics`` of a statement: results and checks."""
+"""Forces of designs and their checks, for the block ``dynamics`` of a statement."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from synthesis.verification.reconstruction import rebuild_mechanism
 Design = TypeVar("Design", bound=DrivenDesign)
 
 STEP_COUNT = 72
-"""Number of steps of a motion, between which peaks are refined."""
+"""Number of steps per turn, or of the range, between which peaks are refined."""
 
 DIMENSIONS: Mapping[ForceQuantity, Dimension | None] = {
     "drive_torque": TORQUE,
@@ -39,7 +39,7 @@ DIMENSIONS: Mapping[ForceQuantity, Dimension | None] = {
 
 
 def check_forces(problem: LinkageProblem, design: Design) -> Design:
-    """Return a design with its forces and the checks of the limited ones."""
+    """Return a design with its forces and the checks of its force limits."""
     return add_force_checks(problem.constraints, add_forces(problem, design))
 
 
@@ -62,7 +62,7 @@ def add_force_checks(constraints: Constraints, design: Design) -> Design:
 
 
 def get_peak(design: DrivenDesign, name: str) -> float | None:
-    """Return the peak that the limit on ``name`` refers to; None if unknown."""
+    """Return the peak of the force ``name``, to which its limit refers; None if it is unknown."""
     found = None if design.forces is None else getattr(design.forces, name)
     return found if found is None or isinstance(found, float) else float(found.max)
 
@@ -84,7 +84,7 @@ def add_forces(problem: LinkageProblem, design: Design) -> Design:
 
 
 class ForcesUnknownError(ValueError):
-    """Raised if the forces of a design are unknown; carries the responsible field below the problem, if any."""
+    """Raised if the forces of a design are unknown; carries the path of the responsible field, if there is one."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -93,9 +93,18 @@ class ForcesUnknownError(ValueError):
 
 
 class DriveSetup(NamedTuple):
-    """Drive of a design: its masses and loads, its inputs (degrees or length units) and their speed.
+    """A design prepared for the computation of its forces.
 
-    The speed is in rad/s, or length units a second.
+    Attributes
+    ----------
+    mechanism : Mechanism
+        The design in its reference configuration.
+    block : DesignDynamics
+        Its masses and loads.
+    at : float, shape (n,)
+        Inputs, degrees or length units.
+    speed : float
+        Input speed, rad/s or length units per second.
     """
 
     mechanism: Mechanism
@@ -105,7 +114,7 @@ class DriveSetup(NamedTuple):
 
 
 def prepare_drive(dynamics: DesignDynamics, design: DrivenDesign, steps: int = STEP_COUNT) -> DriveSetup:
-    """Prepare a design for a whole cycle if its input rotates fully, otherwise for its verified range.
+    """Prepare a design to be driven through a whole cycle if its input rotates fully, otherwise its verified range.
 
     Parameters
     ----------
@@ -180,16 +189,18 @@ def _compute_forces(problem: LinkageProblem, dynamics: DesignDynamics, design: D
 def compute_forces_over_motion(
     dynamics: DesignDynamics, design: DrivenDesign, unit: LengthUnit, steps: int
 ) -> JsonObject:
-    """Analyze a design's motion with all forces, as :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
+    """Analyze a design's motion with all its forces.
+
+    The answer has the form of :class:`synthesis.analyses.linkages.linkage.LinkageAnalysis`.
 
     Parameters
     ----------
     dynamics : DesignDynamics
-        Masses and loads; with the report options of a :class:`DynamicsBlock` if it has them.
+        Masses and loads; the report options of a :class:`DynamicsBlock` are used if it has them.
     design : a design of linkages
-        The design as answered.
+        The design, as in the answer.
     unit : str
-        Its length unit.
+        Length unit of the design.
     steps : int
         Number of steps per turn, or of the range.
 
@@ -201,7 +212,7 @@ def compute_forces_over_motion(
     from synthesis.analyses.linkages.linkage import LinkageAnalysisRequest
 
     run = prepare_drive(dynamics, design, steps)
-    # Fields of designs alone, such as the shape of all links, have been applied to the links already.
+    # Fields that only designs have, such as the shape of all links, have already been applied to the links.
     own = {name for name in DesignDynamics.model_fields if name not in LoadedLinkage.model_fields}
     block = run.block.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude=own)
     request = LinkageAnalysisRequest.model_validate(
@@ -218,7 +229,7 @@ def compute_forces_over_motion(
 
 
 def map_error_path(dynamics: DesignDynamics, path: str) -> str:
-    """Map the path of an error in a link's generated body to the shape of all links, which the client wrote."""
+    """Map the path of an error in a generated body of a link to the shape of all links, the field that was given."""
     parts = path.split("/")
     if parts[1:3] != ["dynamics", "bodies"] or dynamics.links is None or "shape" not in parts[4:5]:
         return path
@@ -228,7 +239,7 @@ def map_error_path(dynamics: DesignDynamics, path: str) -> str:
 
 
 def apply_link_shape(dynamics: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:
-    """Return the block with the shape of all links assigned to the links of a mechanism that it does not name."""
+    """Return the block with the shape of all links assigned to the moving links that ``bodies`` does not name."""
     if dynamics.plate is None:
         return dynamics
     bodies = dict(dynamics.bodies)
@@ -251,10 +262,13 @@ def _fit_shape_to_link(shape: Shape, joints: Sequence[str]) -> Shape:
 def _list_inputs(
     block: DesignDynamics, mechanism: Mechanism, metrics: LinkageMeasures, steps: int
 ) -> NDArray[np.float64] | None:
-    """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else as verified."""
+    """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else of the verified range.
+
+    Return None if the design has no verified motion.
+    """
     from synthesis.mechanisms.courses import find_period_turns
 
-    # Steering linkages do not measure this; their input never rotates fully.
+    # The metrics of steering linkages lack this field; their input never rotates fully.
     turns_through = isinstance(metrics, MotionMetrics) and metrics.full_rotation
     if turns_through and not mechanism.has_slide_input:
         turns = find_period_turns(block, mechanism)

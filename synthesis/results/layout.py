@@ -1,4 +1,4 @@
-"""Arrangement of designs in planes, for the block ``layout`` of a statement: results and checks."""
+"""Arrangement of designs in planes and its check, for the block ``layout`` of a statement."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ PLANES = "planes"
 
 
 def add_layout(problem: LinkageProblem, design: Design) -> Design:
-    """Return a design with its layout, and with the check of its planes if these are limited.
+    """Return a design with its layout, and with the check of its planes if their number is limited.
 
-    It is returned unchanged if it already has a layout.
+    A design that already has a layout is returned unchanged.
     """
     layout_spec = problem.layout
     if layout_spec is None or design.layout is not None:
@@ -32,7 +32,7 @@ def add_layout(problem: LinkageProblem, design: Design) -> Design:
     reference = stated.reference_input_angle if isinstance(stated, HasReferenceAngle) else None
     mechanism = assemble_skeleton(SkeletonSpec.model_validate(stated.skeleton.model_dump()), reference)
     used = metrics.used_stroke
-    # Either a stroke or a range is known, depending on the input.
+    # A sliding input has a used stroke, a rotating input a used range.
     if metrics.used_range is not None:
         used = math.radians(metrics.used_range[0]), math.radians(metrics.used_range[1])
     layout = lay_out_mechanism(mechanism, layout_spec, used)

@@ -1,4 +1,4 @@
-"""Designs as manufactured, for the block ``manufacture`` of a statement: results and checks."""
+"""Manufacturing results of designs and their check, for the block ``manufacture`` of a statement."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def add_manufacture(problem: LinkageProblem, design: DrivenDesign) -> Manufactur
 
 
 def check_yield(problem: LinkageProblem, design: DrivenDesign) -> ManufacturableDesign:
-    """Return a design with its manufacturing results but the widest tolerances, and with the check of its yield."""
+    """Return a design with the check of its yield and its manufacturing results, except the widest tolerances."""
     return _add_results(problem, design, allocate=False)
 
 
 def _add_results(problem: LinkageProblem, design: DrivenDesign, *, allocate: bool) -> ManufacturableDesign:
-    """Return a design with its manufacturing results; unchanged if it has them already.
+    """Return a design with its manufacturing results; unchanged if it already has them.
 
-    ``allocate`` is whether to find the widest tolerances, if requested, which takes many times as long.
+    With ``allocate`` the widest tolerances are found, too, if they are requested. This takes many times as long.
     """
     # Only kinds with such designs accept the block.
     assert isinstance(design, ManufacturableDesign)
@@ -38,7 +38,7 @@ def _add_results(problem: LinkageProblem, design: DrivenDesign, *, allocate: boo
         # The yield counts for the rounded design, which does not exist yet.
         if stated.is_gridded and design.exact is None:
             return design
-        # The widest tolerances need the final designs only; the check of the yield does not depend on them.
+        # The check of the yield does not depend on the widest tolerances, which only the final designs need.
         stated = stated.model_copy(update={"widest": False})
     # Results exist already, unless only the tolerances are missing.
     if design.manufacture is not None and (design.manufacture.widest or not stated.widest):
@@ -63,7 +63,7 @@ def _add_results(problem: LinkageProblem, design: DrivenDesign, *, allocate: boo
     update: dict[str, object] = {"manufacture": told.manufactured, "metrics": metrics}
     if stated.required_yield is not None:
         low = None if told.yield_ is None else told.yield_.low
-        # The lower end of the confidence interval must reach the required yield.
+        # The estimate alone proves nothing: the lower end of the confidence interval must reach the required yield.
         kept = low is not None and low >= stated.required_yield
         others = [check for check in design.verification.checks if check.name != YIELD]
         check = Check(name=YIELD, passed=kept, value=low, limit=stated.required_yield)
@@ -72,7 +72,10 @@ def _add_results(problem: LinkageProblem, design: DrivenDesign, *, allocate: boo
 
 
 def find_branch_range(problem: LinkageProblem, design: DrivenDesign) -> tuple[float, float] | None:
-    """Return the range of the input (radians) on which a manufactured design must stay on its branch, or None."""
+    """Return the range of the input, radians, on which a manufactured design must stay on its branch.
+
+    Return None if it need not stay on its branch, or if no motion passes through the targets.
+    """
     used = design.metrics.used_range
     # Without this constraint a linkage may change its branch between targets.
     if used is None or not problem.constraints.same_branch:
@@ -81,7 +84,7 @@ def find_branch_range(problem: LinkageProblem, design: DrivenDesign) -> tuple[fl
 
 
 def describe_exact_design(problem: LinkageProblem, design: ManufacturableDesign) -> ExactDesign:
-    """Describe the exact design of which a design on the grid is the rounded version."""
+    """Describe a design by the measures that are compared before and after rounding."""
     error, angle = problem.measure_target_errors(design)
     return ExactDesign(
         mechanism=design.mechanism,

@@ -1,6 +1,6 @@
-"""Orders by quantities that are too expensive to measure on every candidate: planes, yield, and forces.
+"""Ranking by quantities that are too expensive to measure on every candidate: planes, yield, and forces.
 
-The search uses the default order of its kind and finds more designs than requested; these are measured and sorted.
+The search uses the default order of its kind and finds more designs than requested. These are then measured and sorted.
 """
 
 from __future__ import annotations
@@ -24,24 +24,26 @@ Problem = TypeVar("Problem", bound=ProblemBase)
 Design = TypeVar("Design", bound=DrivenDesign)
 
 Measure = Callable[[DrivenDesign], float | None]
-"""Returns the measured quantity of a design; None if unknown."""
+"""Callable that returns the measured quantity of a design; None if it is unknown."""
 
 MAX_SEARCHES, LIMIT_FACTOR, MAX_SEARCH_TIME_S = 4, 0.8, 4.0
-"""For orders by a force: maximum number of further searches, limit of each as a share of the smallest force so far, and
-processor time (seconds) after which no further one is started."""
+"""Further searches for orders by a force: maximum number, limit of each as a share of the smallest force found so far,
+and processor time (seconds) after which no further search is started."""
 
 MAX_EXAMINED: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCE_NAMES, 100)
-"""Minimum number of designs to measure for each such order: the first ones in the default order."""
+"""Number of designs to measure for each such order, unless more are requested: the first ones in the default order."""
 
 
 MAX_ROUNDED = 12
-"""Minimum number of designs to search if they are then rounded to a grid, as some have no neighbour on it."""
+"""Number of designs to search, unless more are requested, if they are then rounded to a grid: some have no neighbour
+on it."""
 
 
 def widen_search(problem: Problem) -> Problem:
-    """Return the statement to search: with the default order of its kind and :data:`MAX_EXAMINED` designs.
+    """Return the statement for the search: with the default order of its kind, and enough designs to be measured.
 
-    If designs are rounded to a grid, the order is kept and the number of designs is at least :data:`MAX_ROUNDED`.
+    The number of designs is at least that of :data:`MAX_EXAMINED`. If the order needs no measurement, it is kept; the
+    number of designs is then at least :data:`MAX_ROUNDED` if they are rounded to a grid, and otherwise unchanged.
     """
     if not isinstance(problem, LinkageProblem):
         return problem
@@ -55,10 +57,10 @@ def widen_search(problem: Problem) -> Problem:
 def search_below_limits(
     problem: LinkageProblem, result: AnyResult, solve: Callable[[LinkageProblem], AnyResult]
 ) -> AnyResult:
-    """Add designs with smaller forces to an answer that is ordered by a force, by further searches.
+    """Search further for designs with smaller forces, for an answer that is ordered by a force.
 
-    Each search limits the force to a share of the smallest one so far, because a limit guides a search and an order
-    does not. The searches end if one finds nothing, after :data:`MAX_SEARCHES` searches, or when the time is up.
+    Each search limits the force to a share of the smallest one found so far, because a limit guides a search and an
+    order does not. The searches end if one finds nothing, after :data:`MAX_SEARCHES` searches, or when the time is up.
 
     Parameters
     ----------
@@ -76,7 +78,7 @@ def search_below_limits(
     for _ in range(MAX_SEARCHES):
         known = [get_peak(design, problem.rank_by) for design in found.designs if design.verification.passed]
         least = min((value for value in known if value is not None), default=0.0)
-        # Nothing can be smaller than 0, and NaN ends the search as well.
+        # No force is smaller than 0. The negation also ends the search for NaN.
         if not least > 0.0 or time.process_time() - begun > MAX_SEARCH_TIME_S:
             break
         narrowed = problem.constraints.model_copy(update={limit: LIMIT_FACTOR * least})
@@ -91,7 +93,7 @@ def search_below_limits(
 
 def _restore_checks(problem: LinkageProblem, design: Design) -> Design:
     """Replace the force checks of a design by those of the original limits."""
-    # Checks against the narrower limit would mark good designs as failed.
+    # Checks of the narrower limit would mark good designs as failed.
     checks = [check for check in design.verification.checks if check.name not in FORCE_NAMES]
     bare = design.model_copy(update={"verification": Verification.from_checks(checks)})
     return add_force_checks(problem.constraints, bare)
@@ -100,8 +102,8 @@ def _restore_checks(problem: LinkageProblem, design: Design) -> Design:
 def rank_by_measure(problem: LinkageProblem, result: AnyResult) -> AnyResult:
     """Sort the measured designs of an answer to :func:`widen_search`, and keep the requested number.
 
-    Designs are sorted by increasing value, but by decreasing yield; equal ones keep their order. Designs without a
-    value follow, and designs that fail a check come last.
+    Designs are sorted by increasing value, or by decreasing yield; equal ones keep their order. Designs without a value
+    follow, and designs that fail a check come last.
     """
     designs = sort_by_measure(problem, result.designs)[: problem.max_designs]
     # No remark without designs, because there is nothing to rank.

@@ -16,7 +16,7 @@ def _find_error_field(metrics: LinkageMeasures) -> str | None:
 
 
 def measure_error(design: DrivenDesign) -> float:
-    """Return the error of a design as measured by its kind; 0 if all designs of the kind are exact."""
+    """Return the error of a design by the measure of its kind; 0 if all designs of the kind are exact."""
     field = _find_error_field(design.metrics)
     return 0.0 if field is None else float(getattr(design.metrics, field))
 
@@ -35,17 +35,17 @@ def pareto_front(designs: Sequence[DrivenDesign]) -> Front | None:
         None for fewer than two sound designs.
     """
     sound = [n for n, design in enumerate(designs) if design.verification.passed]
-    # A front of one design says nothing.
+    # A front of a single design has no information.
     if len(sound) < 2:
         return None
     metrics = [designs[n].metrics for n in sound]
+    # Smaller is better in every column, so the transmission angle is negated.
     columns = {
         "min_transmission_angle": [-float(measured.min_transmission_angle) for measured in metrics],
-        # Smaller is better in every column, so the transmission angle is negated.
         "size": [float(measured.size) for measured in metrics],
     }
     error = _find_error_field(metrics[0])
-    # Errors at rounding level are equal: otherwise rounding noise would decide the front.
+    # Errors at rounding level count as equal; otherwise rounding noise would decide the front.
     if error is not None:
         columns = {
             ERROR_FIELDS[error]: [max(float(getattr(measured, error)), RESIDUAL_ROUNDING) for measured in metrics],

@@ -1,4 +1,7 @@
-"""Placement of a linkage with free position: its pivots in their regions and its links within their limits."""
+"""Placement of a linkage whose task does not fix its position, so that its pivots lie in their regions.
+
+The links are brought within their limits of length if the size is free, too.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from synthesis.numerics.box_placement import Boxes, Placement, place_in_boxes
 
 
 class LinkageMechanism(Protocol):
-    """Required interface of a linkage mechanism in an answer, a model of its dimensions."""
+    """Interface of a linkage mechanism in an answer, a model of its dimensions."""
 
     @property
     def skeleton(self) -> Skeleton:
@@ -55,9 +58,9 @@ def find_placement(
     fixed, moving : sequence of complex
         Fixed pivots, and moving pivots in the first position.
     lengths : sequence of float or None
-        Lengths of the links; None if the size is fixed, namely that of ``preferred``.
+        Lengths of the links; None if the size is fixed to that of ``preferred``.
     preferred : complex
-        Preferred size and direction, used if they fit.
+        Preferred size (modulus) and direction (argument), used if they fit.
     turned : bool
         Whether another direction is permitted.
     """
@@ -78,7 +81,7 @@ def find_placement(
 
 
 def convert_regions(regions: Sequence[Region | None]) -> Boxes:
-    """Convert the regions of joints to boxes; infinite for joints without a region."""
+    """Convert the regions of joints to boxes; a joint without a region gets an infinite box."""
     table = np.array(
         [(-math.inf, math.inf) * 2 if region is None else (*region.x, *region.y) for region in regions]
     ).reshape(-1, 4)
@@ -88,14 +91,14 @@ def convert_regions(regions: Sequence[Region | None]) -> Boxes:
 def place_mechanism(
     constraints: Constraints, mechanism: Mechanism, lengths: Sequence[float], *, sized: bool, turned: bool
 ) -> Mechanism:
-    """Place a finished mechanism so that its pivots lie in their regions and its links within their limits.
+    """Place a finished mechanism so that its pivots lie in their regions and its links are within their limits.
 
     Parameters
     ----------
     constraints : Constraints
         Constraints with the regions and limits of length to satisfy.
     mechanism : a mechanism of an answer
-        It stays where it is if it fits there.
+        The mechanism; it is returned unchanged if it already fits.
     lengths : sequence of float
         Lengths of its links.
     sized, turned : bool
@@ -119,7 +122,7 @@ def _is_placed(
 ) -> bool:
     """Return whether the linkage already satisfies all regions and limits."""
     limits = constraints.link_length
-    # The tolerance keeps a link that a fit placed exactly at its limit.
+    # The tolerance accepts a link that a fit placed exactly at its limit.
     if limits is not None and min(lengths) < limits.min * (1.0 - EDGE_TOLERANCE):
         return False
     if limits is not None and limits.max is not None and max(lengths) > limits.max * (1.0 + EDGE_TOLERANCE):

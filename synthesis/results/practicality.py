@@ -1,8 +1,8 @@
-"""Preference for practical designs in answers to problems without limits of their own.
+"""Preference for practical designs in answers to problems that state no limits of practicality.
 
 Practice requires a minimum transmission angle of 30 to 40 degrees and a link ratio of at most about ten (Norton,
 *Design of Machinery*, Sec. 3.3 and 4.10). A link that is many times longer than the task rarely fits. A design that is
-slightly closer to the task but cannot be built is no better answer.
+slightly more accurate but cannot be built is not a better answer.
 """
 
 from __future__ import annotations
@@ -32,38 +32,41 @@ CONSTRAINT_TOLERANCE = 1e-6
 """Relative tolerance for designs that a fit placed exactly at one of these limits."""
 
 ERROR_BAND = 2.0
-"""Factor of the smallest error up to which errors make no practical difference."""
+"""Errors up to this multiple of the smallest one make no practical difference."""
 
 
 class OrderedDesigns(NamedTuple, Generic[Design]):
-    """Sorted designs and a remark on their order; empty if the first design is practical anyway."""
+    """Sorted designs and a remark on their order.
+
+    The remark is empty if the first design is practical anyway, or if the client gave limits or an order.
+    """
 
     designs: list[Design]
     remark: str
 
 
 def has_even_links(design: DrivenDesign) -> bool:
-    """Return whether a passed design transmits force well and has a moderate link ratio."""
+    """Return whether a design transmits force well and has a moderate link ratio."""
     measured = design.metrics
     transmits = measured.min_transmission_angle >= MIN_TRANSMISSION_ANGLE * (1.0 - CONSTRAINT_TOLERANCE)
     return bool(transmits and measured.link_ratio <= MAX_LINK_RATIO * (1.0 + CONSTRAINT_TOLERANCE))
 
 
 def is_usable(design: DrivenDesign) -> bool:
-    """Return whether a design is practical: also without a link that is far longer than the task."""
+    """Return whether a design is practical: :func:`has_even_links`, and no link is far longer than the task."""
     metrics = design.metrics
     reach = metrics.reach if isinstance(metrics, MotionMetrics) else None
     return has_even_links(design) and (reach is None or reach <= MAX_REACH * (1.0 + CONSTRAINT_TOLERANCE))
 
 
 def sort_usable_first(problem: LinkageProblem, designs: Sequence[Design]) -> OrderedDesigns[Design]:
-    """Move the practical designs whose error is close to the smallest one before all others.
+    """Move practical designs whose error is close to the smallest one to the front.
 
-    The order is kept if the client gave a limit of transmission angle or link ratio, or another order.
+    The order is kept if the problem limits the transmission angle or the link ratio, or requests another order.
     """
     limited = not all(_is_default(problem.constraints, name) for name in ("min_transmission_angle", "max_link_ratio"))
     passed = [design for design in designs if design.verification.passed]
-    # A client who set limits or an order has decided what matters.
+    # Given limits or a given order express the client's own preference.
     if limited or not _is_default(problem, "rank_by") or not passed or is_usable(passed[0]):
         return OrderedDesigns(list(designs), "")
 
@@ -73,7 +76,7 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Design]) -> Ord
         return measure_error(design) if measure is None else float(getattr(design.metrics, measure))
 
     least = min(map(measure_design_error, passed))
-    # Exact designs differ by rounding only: compare with at least the rounding level.
+    # Exact designs differ by rounding only, so compare with at least the rounding level.
     near = [design for design in passed if measure_design_error(design) <= ERROR_BAND * max(least, RESIDUAL_ROUNDING)]
     missing = (
         "No design found" if len(near) == len(passed) else f"No design within {ERROR_BAND:g} times the smallest error"
@@ -88,8 +91,8 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Design]) -> Ord
         return OrderedDesigns(
             move_to_front(first, designs),
             f" Designs with {practice} and {compact} are listed first.",
-            # Without a fully practical design, accept a long link before a poor transmission angle.
         )
+    # Without a fully practical design, accept a long link rather than a poor transmission angle.
     told = f" {missing} has {practice} and {compact}"
     if has_even_links(passed[0]):
         return OrderedDesigns(list(designs), f"{told}.")

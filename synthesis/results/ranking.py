@@ -1,6 +1,6 @@
-"""Order of designs: the one place that sorts them, by keys of their kind; and removal of designs that are nearly equal.
+"""Ranking of designs by the keys of their kind, and selection of candidates that differ from one another.
 
-docs/methods/ranking.md explains the orders.
+All sorting of designs is done here. docs/methods/ranking.md explains the orders.
 """
 
 from __future__ import annotations
@@ -19,21 +19,23 @@ Ranked = TypeVar("Ranked", bound=VerifiedDesign)
 
 
 def select_distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
-    """Choose different candidates greedily: each has some joint at least ``apart`` from every earlier one's.
+    """Select different candidates greedily, best first.
+
+    A candidate differs from another if some joint is at least ``apart`` from the same joint of the other.
 
     Parameters
     ----------
     joints : complex, shape (candidates, joints)
         Joints in the first position, best candidate first; there may be no candidates.
     count : int
-        Maximum number of candidates to choose.
+        Maximum number of candidates to select.
     apart : float
         Minimum distance, in the unit of ``joints``.
 
     Returns
     -------
     list of int
-        Chosen rows, best first.
+        Selected rows, best first.
     """
     table = np.ascontiguousarray(joints, np.complex128)
     # The kernel cannot be compiled for an empty table of unknown width.
@@ -41,12 +43,15 @@ def select_distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
 
 
 def select_most_distinct(joints: NDArray[np.complex128], count: int, aparts: Iterable[float]) -> list[int]:
-    """Choose as :func:`select_distinct` with the first distance of ``aparts`` that gives ``count``, else with the
-    last."""
+    """Select different candidates as :func:`select_distinct`, with the first distance that gives ``count`` of them.
+
+    The distances ``aparts`` are tried in order. If none gives enough candidates, the result of the last one is
+    returned.
+    """
     chosen: list[int] = []
     for apart in aparts:
         chosen = select_distinct(joints, count, float(apart))
-        # Enough, or all that exist: a smaller distance would only add near duplicates.
+        # There are enough, or all that exist; a smaller distance would only add near duplicates.
         if len(chosen) >= min(count, len(joints)):
             break
     return chosen
@@ -62,10 +67,10 @@ def _select_distinct(joints: NDArray[np.complex128], count: int, apart: float) -
         differs = True
         for j in chosen[:taken]:
             gap = 0.0
-            # Two candidates differ if any of their joints does.
+            # Two candidates differ if any of their joints differs.
             for k in range(joints.shape[1]):
                 gap = max(gap, abs(joints[i, k] - joints[j, k]))
-            # Too close to a better candidate, which is already chosen.
+            # This candidate is too close to a better one, which is already selected.
             if gap < apart:
                 differs = False
                 break
@@ -76,12 +81,12 @@ def _select_distinct(joints: NDArray[np.complex128], count: int, apart: float) -
 
 
 RESIDUAL_ROUNDING = 1e-12
-"""Residual, in task sizes, below which it is rounding."""
+"""Residual, as a share of the task's size, up to which it is rounding."""
 
 
 def _compute_decade(residual: float) -> float:
     """Return the order of magnitude of a residual; residuals of one decade, or at rounding level, count as equal."""
-    # Whole decades: differences within one do not matter in practice, and other keys decide.
+    # Differences within a decade do not matter in practice; other keys then decide.
     return math.floor(math.log10(max(residual, RESIDUAL_ROUNDING)))
 
 
@@ -98,7 +103,7 @@ SORT_KEYS: Mapping[str, Key] = {
     "size": lambda design: design.metrics.size,
     "transmission_angle": lambda design: -design.metrics.min_transmission_angle,
 }
-"""Sort keys for each value of ``rank_by``, smallest first; a kind has keys of its own if it measures differently."""
+"""Sort key by value of ``rank_by``, smallest first. A kind has its own keys if it measures other quantities."""
 
 
 def rank_designs(
@@ -109,27 +114,27 @@ def rank_designs(
     group: Callable[[Ranked], float] | None = None,
     ties: Callable[[Ranked], float] = get_quality_key,
 ) -> list[Ranked]:
-    """Sort designs in the requested order, with designs that fail a check after all others.
+    """Sort designs in the requested order; designs that fail a check come last.
 
     Parameters
     ----------
     designs : sequence
         Verified designs.
     rank_by : str
-        Name of the key.
+        Name of the sort key.
     own : mapping, optional
-        Keys of the kind that replace those in :data:`SORT_KEYS`.
+        Sort keys of the kind, which replace or extend :data:`SORT_KEYS`.
     group : callable, optional
-        Key that precedes every order: designs with a lower value always come first.
+        Key that precedes the requested order: designs with a smaller value always come first.
     ties : callable
-        Key that decides between equal designs; by default the quality.
+        Key that decides between designs that are equal in the requested order; by default the quality.
     """
     key = {**SORT_KEYS, **(own or {})}[rank_by]
     return sort_designs(designs, *([group] if group else []), key, ties)
 
 
 def sort_designs(designs: Iterable[Ranked], *keys: Callable[[Ranked], float]) -> list[Ranked]:
-    """Sort designs by several keys, smallest first, the first key first; designs that fail a check come last.
+    """Sort designs by several keys, in order of precedence, smallest first; designs that fail a check come last.
 
     Equal designs keep their order.
     """
@@ -137,7 +142,7 @@ def sort_designs(designs: Iterable[Ranked], *keys: Callable[[Ranked], float]) ->
 
 
 def select_best(designs: Iterable[Ranked], *keys: Callable[[Ranked], float]) -> Ranked:
-    """Return the design with the smallest keys, the first key first, whether it passed or not."""
+    """Return the design with the smallest keys, in order of precedence, whether or not it passed."""
     return min(designs, key=lambda design: _list_values(design, keys))
 
 

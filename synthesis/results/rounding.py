@@ -1,8 +1,8 @@
-"""Rounding of designs to the grid of a shop, or to links in stock: the best linkage near each design, fully verified.
+"""Rounding of designs to the grid of a shop, or to links in stock.
 
-A search finds exact designs. For each of them the neighbouring linkages on the grid are driven, the most accurate one
-first, until one satisfies every constraint. Targets that should be met exactly are then met approximately, within the
-quality if one is given.
+A search finds exact designs. The linkages on the grid near each of them are driven and fully verified, the most
+accurate one first, until one satisfies every constraint. Targets that should be met exactly are then met approximately,
+within the quality if one is given.
 """
 
 from __future__ import annotations
@@ -27,32 +27,30 @@ from synthesis.results.ranking import select_best
 from synthesis.verification.checks import check_maximum
 
 Nearly = Callable[[Any, Any, Any], Any]
-"""The type of :attr:`synthesis.model.kind.Kind.nearly` of a kind that is not known."""
+"""Type of :attr:`synthesis.model.kind.Kind.nearly`, for any kind."""
 
 ON_GRID = "on_grid"
 """Reason of rejection if no linkage on the grid near a design can be driven."""
 
 MAX_DRIVEN, MAX_VERIFIED = 100, 40
-"""Maximum number of linkages near a design that are driven, and that are then checked for all other constraints."""
+"""Maximum number of linkages near a design that are driven, and of those that are checked for all other constraints."""
 
 LARGE_ERROR = 0.05
-"""Permitted error at a target without a quality: share of the task's size, and radians."""
+"""Permitted error at a target if no quality is given: a share of the task's size, and radians."""
 
 MAX_ERROR_GROWTH = 2.0
-"""Permitted error growth by rounding, as a multiple of the exact design's error, if that gives more than
-:data:`LARGE_ERROR`.
-"""
+"""Permitted error after rounding, as a multiple of the exact design's error, if this exceeds :data:`LARGE_ERROR`."""
 
 
 class _RoundedDesign(NamedTuple):
-    """Best linkage on the grid near a design, and its reason of rejection; empty if it passed."""
+    """Best linkage on the grid near a design, and its reason of rejection, which is empty if it passed."""
 
     design: ManufacturableDesign | None
     reason: str
 
 
 def round_designs(problem: LinkageProblem, result: AnyResult, verify_with_tolerance: Nearly | None) -> AnyResult:
-    """Return an answer with designs on the requested grid, each with its exact design.
+    """Return an answer with its designs rounded to the requested grid; each contains its exact design.
 
     Parameters
     ----------
@@ -81,7 +79,7 @@ def round_designs(problem: LinkageProblem, result: AnyResult, verify_with_tolera
             missed.append(rounded)
         else:
             found.append(rounded.design)
-    # Designs lost by rounding move from accepted to rejected, so that the counts still add up.
+    # Count designs without a good neighbour as rejected instead of accepted, so that the counts still add up.
     lost = Counter(rounded.reason for rounded in missed)
     search = result.search
     account = {
@@ -99,7 +97,7 @@ def round_designs(problem: LinkageProblem, result: AnyResult, verify_with_tolera
             "designs": [*found, *(failed if problem.include_failed else [])][: problem.max_designs],
             "search": search.model_copy(update=account),
             "summary": result.summary + told,
-            # With a rounded design there is no need for a nearest miss.
+            # A nearest miss is needed only if no design could be rounded.
             "nearest_miss": result.nearest_miss if found else _find_nearest_miss(missed),
         }
     )
@@ -122,7 +120,7 @@ def _round_design(
     if isinstance(near, str):
         return _RoundedDesign(None, ON_GRID)
     first, judged = _RoundedDesign(None, ON_GRID), 0
-    # Candidates are sorted by error: the first that passes is the most accurate one.
+    # The linkages are sorted by error, so the first that passes is the most accurate one.
     for n in range(min(len(near.rows), MAX_DRIVEN)):
         mechanism = build_mechanism(linkage, near, n)
         driven: ManufacturableDesign | None = (
@@ -130,12 +128,12 @@ def _round_design(
         )
         if driven is None:
             continue
-        # These are the types that have a grid.
+        # Only these types have a grid.
         assert isinstance(driven.mechanism, FourbarMechanism | SliderCrankMechanism)
         checks = [*_check_quality(problem, driven, exact), *driven.verification.checks]
         rounded = driven.model_copy(
             update={
-                # Joints are computed, but the dimensions must be the grid values exactly.
+                # The mechanism was built from computed joints, but its dimensions must be exactly the grid values.
                 "mechanism": replace_dimensions(driven.mechanism, near.rows[n]),
                 "exact": exact,
                 "verification": Verification.from_checks(checks),
@@ -145,7 +143,7 @@ def _round_design(
             judged += 1
             verified = check_shared_constraints(problem, rounded)
             if verified is None:
-                # Driven, but no mechanism can be rebuilt from the rounded dimensions.
+                # The linkage was driven, but no mechanism can be rebuilt from its rounded dimensions.
                 continue
             rounded = verified
         broken = rounded.verification.failures
@@ -154,14 +152,14 @@ def _round_design(
         # Keep the most accurate failure for the nearest miss.
         if first.design is None:
             first = _RoundedDesign(rounded, broken[0].name)
-        # The common constraints are expensive, so limit the number of designs that reach them.
+        # The shared constraints are expensive, so limit the number of linkages that are checked for them.
         if judged >= MAX_VERIFIED:
             break
     return first
 
 
 def _check_quality(problem: LinkageProblem, design: ManufacturableDesign, exact: ExactDesign) -> list[Check]:
-    """Check the errors at targets without a tolerance of their own against the permitted errors."""
+    """Check the errors at targets that have no tolerance of their own."""
     held = problem.build_required_targets(design)
     own = _mark_own_tolerances(held)
     # Targets with their own tolerances have checks of their own.
@@ -178,7 +176,7 @@ def _check_quality(problem: LinkageProblem, design: ManufacturableDesign, exact:
 def _set_error_limits(problem: LinkageProblem, held: RequiredTargets, exact: ExactDesign) -> tuple[float, float]:
     """Return the permitted distance and angle (radians) at targets: the quality if given, otherwise the defaults."""
     quality = None if problem.manufacture is None else problem.manufacture.quality
-    # An exact design may itself be inaccurate, as a fit to many targets; rounding may then double its error.
+    # A design that is a fit to many targets is itself inaccurate; rounding may then double its error.
     distance = max(LARGE_ERROR * held.size, MAX_ERROR_GROWTH * (exact.max_error or 0.0))
     angle = max(LARGE_ERROR, MAX_ERROR_GROWTH * math.radians(exact.max_angle_error or 0.0))
     if quality is not None and quality.max_error is not None:
@@ -189,7 +187,7 @@ def _set_error_limits(problem: LinkageProblem, held: RequiredTargets, exact: Exa
 
 
 def _mark_own_tolerances(held: RequiredTargets) -> NDArray[np.bool_] | None:
-    """Return a mask of the targets with a tolerance of their own; None if there are none."""
+    """Return a mask of the targets with tolerances of their own, given by the task; None if there are none."""
     limits = held.limits
     if limits is None:
         return None
@@ -198,7 +196,7 @@ def _mark_own_tolerances(held: RequiredTargets) -> NDArray[np.bool_] | None:
 
 
 def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
-    """Return the linkage on the grid that fails the fewest checks; among equals the one with the smallest error."""
+    """Return the linkage on the grid that fails the fewest checks, and among equals the one with the smallest error."""
     known = [rounded.design for rounded in missed if rounded.design is not None]
     if not known:
         return None

@@ -1,7 +1,7 @@
-"""Preference for the simplest sound type of linkage; other types are added only if they are clearly better.
+"""Preference for the simplest sound type of linkage; other types are listed only if they are clearly better.
 
-These are the rules of the field ``mechanisms``, for all kinds that have it. Each kind defines and describes what is
-better.
+These are the rules of the field ``mechanisms``, for all kinds that have it. Each kind defines which designs are clearly
+better, and describes why.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SOUND_TRANSMISSION_ANGLE = 20.0
 """Minimum transmission angle (degrees) with which a linkage counts as sound if the client requires none."""
 
 ERROR_RATIO = 0.5
-"""Maximum error of a linkage with more links, as a share of the simpler linkage's error, to be listed as well."""
+"""Maximum error of a linkage with more links, as a share of the simpler linkage's error, with which it is listed."""
 
 
 def prefer_simplest(
@@ -41,9 +41,9 @@ def prefer_simplest(
     simple, sixbars : callable or None
         Solvers of the simpler types and of sixbars; at most one is None, for types that are not searched.
     alone : callable
-        Whether a design that satisfies all constraints is good enough to search no other types.
+        Whether a design that passed is good enough, so that no other types are searched.
     joined : callable
-        Merges both answers.
+        Merges the answers of the simpler types and of sixbars.
     progress : callable
         Progress callback.
     unlooked : str
@@ -55,7 +55,7 @@ def prefer_simplest(
     if sixbars is None:
         result = simple(progress)
         return result.model_copy(update={"summary": f"{result.summary} {unlooked}".rstrip()})
-    # Search the simple types first: if one of them is good enough, the expensive search of sixbars is skipped.
+    # Search the simple types first: if one of their designs is good enough, skip the expensive search for sixbars.
     plain = simple(scale_progress(progress, 0.0, 0.4))
     if any(alone(design) for design in select_passing(plain.designs)):
         return plain
@@ -68,8 +68,8 @@ def select_passing(designs: Sequence[Design]) -> list[Design]:
 
 
 def has_good_transmission(problem: LinkageProblem, design: DrivenDesign) -> bool:
-    """Return whether a linkage that passes all checks transmits force well enough to search no other types."""
-    # A required angle has already been checked, so passing is good enough.
+    """Return whether a linkage that passed transmits force so well that no other types need to be searched."""
+    # A required minimum angle has already been checked, so a linkage that passed is good enough.
     demanded = problem.constraints.min_transmission_angle
     return demanded is not None or bool(design.metrics.min_transmission_angle >= SOUND_TRANSMISSION_ANGLE)
 
@@ -77,13 +77,13 @@ def has_good_transmission(problem: LinkageProblem, design: DrivenDesign) -> bool
 def merge_alternatives(
     most: int, plain: Sequence[Design], better: Sequence[Design], ordered: Callable[[list[Design]], list[Design]]
 ) -> list[Design]:
-    """Return the best ``most`` designs of both types in order; if there are two or more, at least one of each type."""
+    """Return the best ``most`` designs of both types in order, with at least one design of each type if possible."""
     order = ordered([*plain, *better])
     kept = order[:most]
     for sort in (plain, better):
-        # With space for one design only, the best of all is shown.
+        # If only one design is listed, it is the best of all.
         if sort and len(kept) > 1 and not any(design is one for design in kept for one in sort):
-            # Replace the last design: the best of the missing type is informative, the last of the other least so.
+            # Replace the last design, which is the least informative, by the best one of the missing type.
             kept[-1] = next(design for design in order if any(design is one for one in sort))
     return kept
 
@@ -91,14 +91,14 @@ def merge_alternatives(
 def describe_alternatives(problem: LinkageProblem, offered: int, of_second: int) -> str:
     """Return the end of a sentence that compares other types with the best simpler linkage.
 
-    It is a plain full stop as long as the listed designs are not yet known.
+    It is a plain full stop if the designs to list are not yet known, because they will be sorted again.
 
     Parameters
     ----------
     problem : LinkageProblem
         The problem as searched.
     offered, of_second : int
-        Number of listed designs, and how many of them are of the other types.
+        Number of listed designs, and number of those that are of the other types.
     """
     if problem.is_listed_later:
         return "."
@@ -126,9 +126,9 @@ def merge_results(
     offered : sequence of designs
         Designs of both answers to list, in order.
     of_second : int
-        Number of them from the second answer.
+        Number of these designs that are from the second answer.
     remark : str
-        Sentence before both summaries.
+        Sentence that precedes both summaries.
     ordered : callable
         Sorts designs.
     """
@@ -146,8 +146,8 @@ def merge_results(
 
 
 def limit_offered(search: Search, count: int) -> Search:
-    """Return the counts of a search of which at most ``count`` designs are listed; the others count as outranked."""
-    # A search may have accepted more designs than are listed now.
+    """Return a search with at most ``count`` accepted candidates; the others count as outranked."""
+    # A search may have accepted more designs than are now listed.
     withdrawn = max(search.accepted - count, 0)
     rejected = Counter(search.rejected) + Counter({OUTRANKED_REASON: withdrawn})
     return search.model_copy(update={"accepted": search.accepted - withdrawn, "rejected": dict(rejected)})

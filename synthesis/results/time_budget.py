@@ -1,8 +1,9 @@
-"""Time budget of the nearest-miss search: start another run only if one as long as the longest so far still fits.
+"""Time budget of the nearest-miss search.
 
-The duration of a run is known only afterwards, so that the longest run of the same kind estimates the next one. The
-budget is exceeded at most by one run that is longer than all before, and by the first run, which always happens. The
-budget is processor time, so that answers do not become poorer while the machine is busy.
+Another run of a search is started only if a run as long as the longest one so far still fits the budget: the duration
+of a run is known only afterwards, and the longest run of the same search is the estimate for the next one. The budget
+can be exceeded by the first run of a search, which is always made, and by one run that is longer than all before. It is
+processor time, not elapsed time, so that answers do not become poorer while the machine is busy.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ Arguments = ParamSpec("Arguments")
 Found = TypeVar("Found")
 
 MAX_SEARCH_SHARE = 4.0
-"""Budget in seconds of processor time. Most searches take less than one second; one longer run may raise the total to
-about five seconds."""
+"""Default budget, seconds of processor time. Most searches take less than one second; one longer run may raise the
+total to about five seconds."""
 
 
 class SearchBudget:
-    """Budget of processor time that several kinds of searches share.
+    """Budget of processor time that several searches share.
 
     Parameters
     ----------
@@ -40,10 +41,10 @@ class SearchBudget:
         return MeteredSearch(self, search)
 
     def run_metered(self, search: Callable[[], Found]) -> tuple[Found, float]:
-        """Run a search, charge its time to the budget, and return its result and its time in seconds."""
+        """Run a search and charge its time to the budget; return its result and its time in seconds."""
         begun = self._clock()
         try:
-            # Charge the time of a search that raises, too.
+            # `finally` charges the time of a search that raises, too.
             found = search()
         finally:
             taken = self._clock() - begun
@@ -56,15 +57,15 @@ class SearchBudget:
 
 
 class MeteredSearch(Generic[Arguments, Found]):
-    """A search that charges its time to a budget; called like the search itself."""
+    """A search that charges its time to a budget. It is called like the search itself."""
 
     def __init__(self, allowance: SearchBudget, search: Callable[Arguments, Found]) -> None:
         self._allowance, self._search = allowance, search
+        # Each search has its own longest run, because the searches differ in duration.
         self._longest = 0.0
 
-    # A class so that each kind of search has its own longest run.
     def __call__(self, *arguments: Arguments.args, **named: Arguments.kwargs) -> Found:
-        """Run the search even if the budget is used up."""
+        """Run the search, even if the budget is used up."""
         found, taken = self._allowance.run_metered(partial(self._search, *arguments, **named))
         self._longest = max(self._longest, taken)
         return found

@@ -4,6 +4,6 @@ This package contains the parts common to all kinds of problems: the mechanism r
 (:mod:`~synthesis.verification.reconstruction`), extremes of its motion
 (:mod:`~synthesis.verification.refined_extremes`), measured properties of every driven linkage
 (:mod:`~synthesis.verification.measures`), and comparisons of measured values with limits
-(:mod:`~synthesis.verification.checks`, :mod:`~synthesis.verification.constraints`). Requirements of a single kind
-(targets, dwells, dials) are checked in that kind's folder ``verification``; a module here imports no kind.
+(:mod:`~synthesis.verification.checks`, :mod:`~synthesis.verification.constraints`). Requirements of a single kind, such
+as targets, dwells or dials, are checked in the folder ``verification`` of that kind. The modules here import no kind.
 """

@@ -1,4 +1,4 @@
-"""Checks of one measured value, against a client's limit or against a numerical tolerance."""
+"""Checks of a measured value against a requested limit or a numerical tolerance."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from synthesis.model.answer import Check
 from synthesis.model.dimension import Dimension
 
 TARGET_TOLERANCE = 1e-9
-"""Maximum residual (share of the task's size; radians) at which a target counts as reached: far below any
-manufacturing tolerance, far above the rounding of double precision for a linkage of sensible size."""
+"""Maximum residual (share of the task's size, or radians) with which a target counts as reached. It is far below any
+manufacturing tolerance, and far above the rounding of double precision for a linkage of sensible size."""
 
 CHOICE_TOLERANCE = 1e-8
-"""Maximum deviation from a side that the client fixed; angles of short links lose a digit compared with positions."""
+"""Maximum deviation from a given choice, such as a pivot, a line or a phase. Angles of short links are a digit less
+accurate than positions."""
 
 LIMIT_SLACK = 1e-9
-"""Relative slack when a measured value is compared with a client's limit, so that a value that is exactly at the limit
-does not fail by rounding."""
+"""Relative slack of a requested limit, so that a value exactly at the limit does not fail by rounding."""
 
 
 REACHES_TARGETS = "reaches_targets"
@@ -22,7 +22,7 @@ REACHES_TARGETS = "reaches_targets"
 
 
 def check_targets_reached(residual: float) -> Check:
-    """Check the largest residual at exact targets: a share of the task's size, or radians."""
+    """Check the maximum residual at exact targets, a share of the task's size or radians."""
     return check_error(REACHES_TARGETS, residual, TARGET_TOLERANCE)
 
 
@@ -35,7 +35,7 @@ def check_minimum(
     name: str, value: float, limit: float, dimension: Dimension | None = None, slack: float = LIMIT_SLACK
 ) -> Check:
     """Check a value against a minimum; ``slack`` is relative."""
-    # Relative, because limits range from fractions to thousands; the slack of a limit 0 is 0.
+    # The slack is relative, because limits range from fractions to thousands. A limit of 0 has no slack.
     return Check(name=name, passed=value >= limit * (1.0 - slack), value=value, limit=limit, dimension=dimension)
 
 

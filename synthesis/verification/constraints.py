@@ -1,7 +1,7 @@
-"""Checks of the client's constraints, for every kind of problem.
+"""Checks of the requested constraints on linkages, common to all kinds of problems.
 
-Every constraint is either checked here on the measured properties, or refused in advance because no linkage of the kind
-can have such a property (``contradictions`` of each kind).
+A constraint is either checked here on the measured properties, or refused in advance because no linkage of the kind can
+satisfy it; each kind lists such contradictions (``find_contradictions``).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def check_constraints(
     Parameters
     ----------
     constraints : Constraints
-        The client's constraints.
+        The requested constraints.
     measures : Measures
         Measured properties of the driven linkage.
     fixed_pivots, moving_pivots : sequence of complex
@@ -50,14 +50,14 @@ def check_constraints(
     if constraints.full_rotation:
         checks.append(Check(name="full_rotation", passed=measures.full_rotation))
     if constraints.link_length is not None:
-        # A minimum of 0 is the default and no constraint.
+        # A minimum of 0 is the default and constrains nothing.
         if constraints.link_length.min > 0.0:
             checks.append(check_minimum("shortest_link", min(measures.lengths), constraints.link_length.min, LENGTH))
         if constraints.link_length.max is not None:
             checks.append(check_maximum("longest_link", max(measures.lengths), constraints.link_length.max, LENGTH))
     if constraints.max_link_ratio is not None:
         checks.append(check_maximum("link_ratio", measures.link_ratio, constraints.max_link_ratio))
-    # Regions are exact: the distance function itself returns 0 for points on the border.
+    # No slack is needed here, because the distance is exactly 0 for points that are on the border to rounding.
     for name, region, pivots in (
         ("fixed_pivot_region", constraints.fixed_pivot_region, fixed_pivots),
         ("moving_pivot_region", constraints.moving_pivot_region, moving_pivots),

@@ -2,8 +2,9 @@
 
     quality = sin μ / ((1 + (reach/3)²) · (1 + (ratio/8)²))
 
-combines the first concerns of a designer: good force transmission, a linkage that is small for its task, and links of
-similar lengths. docs/methods/ranking.md explains the numbers and defines the size of the task for each kind of problem.
+with the minimum transmission angle μ, the reach and the link ratio, combines the first concerns of a designer: good
+force transmission, a linkage that is small for its task, and links of similar lengths. docs/methods/ranking.md explains
+the numbers and defines the size of the task for each kind of problem.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class Measures(NamedTuple):
     min_transmission_angle : float
         Minimum over the used range, degrees; the minimum of ``transmission_angles``.
     transmission_angles : dict of str to float
-        Minimum at each closure by the name of its first link, and at each leg of a triad, degrees.
+        Minimum over the used range at each closure, by the name of its first link, and at each leg of a triad, degrees.
     same_branch, visits_in_order, full_rotation : bool
         Whether no toggle lies in the used range, targets are visited in order, and the input rotates fully.
     link_ratio : float
@@ -71,10 +72,11 @@ class Measures(NamedTuple):
     size : float
         Diagonal of the box around all joints: at the targets, or over the motion for kinds without targets.
     quality : float
-        Between 0 and 1.
+        Quality, between 0 and 1.
     used_range, used_stroke : (float, float) or None
-        First and last input of the measured motion: absolute angles, degrees, or positions of a sliding input along its
-        line, length units. None for the other type of input, and if no motion passes through the targets.
+        First and last input of the measured motion: absolute angles (degrees) of a rotating input, or positions of a
+        sliding input along its line (length units). The field for the other type of input is None; both are None if no
+        motion passes through the targets.
     lengths : list of float
         Link lengths; not part of an answer.
     """
@@ -96,12 +98,12 @@ class Measures(NamedTuple):
 
     @classmethod
     def from_metrics(cls, metrics: LinkageMeasures, lengths: list[float]) -> Self:
-        """Return the properties of a linkage with these metrics in an answer; None for those that they lack."""
+        """Return the properties of a linkage from its metrics in an answer; a property that they lack is None."""
         known = metrics.model_dump(include=set(cls._fields))
         return cls(**{**dict.fromkeys(cls._fields), **known, "lengths": lengths})
 
     def select_fields(self, metrics: type[BaseModel]) -> JsonObject:
-        """Return the measured properties for which a model of metrics has a field."""
+        """Return the measured properties for which a metrics model has a field."""
         return {name: getattr(self, name) for name in _list_common_fields(metrics)}
 
 
@@ -134,7 +136,7 @@ def measure_linkage(
     reach : float
         Maximum distance between two joints of one link, from :func:`measure_reach` or :func:`measure_fourbar_reach`.
     task : float
-        Size of the task, in length units; infinite for a task without size, so that reach does not count.
+        Size of the task, length units; infinite for a task without size, so that the reach does not count.
     transmission : mapping of str to float
         Minimum transmission angle at each closure over the used range, radians; empty without a used range.
     places : complex, shape (n,)
@@ -147,10 +149,10 @@ def measure_linkage(
     slides : bool
         Whether the input slides.
     eased : float
-        Factor of the quality, for a linkage that carries a body: see
+        Additional factor of the quality for a linkage that carries a body, from
         :func:`synthesis.verification.body_motion.compute_ease`.
     """
-    # Without a used range there are no angles, and 0 is the worst one: quality becomes 0.
+    # Without a used range there are no angles. The worst one, 0, makes the quality 0.
     least = min(transmission.values(), default=0.0)
     ratio = max(lengths) / min(lengths)
     return Measures(
@@ -162,7 +164,7 @@ def measure_linkage(
         visits_in_order=visits_in_order,
         full_rotation=full_rotation,
         link_ratio=ratio,
-        # A task without size has an infinite scale: reach then drops out of the quality and is not reported.
+        # The size of a task without size is infinite: the reach then drops out of the quality and is not reported.
         reach=reach / task if math.isfinite(task) else None,
         size=measure_diagonal(places),
         quality=eased * compute_quality(math.sin(least), reach / task, ratio),
@@ -173,7 +175,7 @@ def measure_linkage(
 
 
 def list_link_lengths(mechanism: SkeletonMechanism) -> list[float]:
-    """Return the link lengths of an answer's mechanism; a block's arm of length 0 is no link."""
+    """Return the link lengths of an answer's mechanism, without arms of length 0, which are not links."""
     links = mechanism.links.model_dump() if isinstance(mechanism.links, BaseModel) else mechanism.links
     return [length for length in links.values() if length > 0.0]
 
@@ -225,8 +227,8 @@ def classify_fourbar(mechanism: Mechanism, *joints: str) -> BarkerClass:
 
 
 def classify_inner_fourbar(mechanism: Mechanism) -> BarkerClass | None:
-    """Classify the fourbar O2 A B O4 within a linkage; None if it contains none, as a Stephenson II sixbar."""
+    """Classify the fourbar O2 A B O4 within a linkage; None if it contains none, such as a Stephenson II sixbar."""
     sides = ({"O2", "A"}, {"A", "B"}, {"B", "O4"}, {"O4", "O2"})
-    # Each pair of joints must belong to one link; sixbars of other topology have no such loop.
+    # Each pair of neighbouring joints must belong to one link; some sixbars have no such loop.
     joined = all(any(side <= set(joints) for joints in mechanism.links.values()) for side in sides)
     return classify_fourbar(mechanism) if joined else None

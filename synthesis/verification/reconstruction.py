@@ -24,25 +24,25 @@ class Dimensions(Protocol):
 def rebuild_mechanism(mechanism: Dimensions, *, from_skeleton: bool = False) -> Mechanism | None:
     """Rebuild the mechanism of an answer in its reference configuration.
 
-    If the dimensions of a type are complete, its skeleton is ignored. Every other type is rebuilt from its skeleton,
-    with which its lengths must agree.
+    If the dimensions of its type are complete, its skeleton is ignored. A mechanism of any other type is rebuilt from
+    its skeleton, with which its lengths must agree.
 
     Parameters
     ----------
     mechanism : Dimensions
         Mechanism of any answer.
     from_skeleton : bool
-        Use the skeleton in any case, after a comparison with the dimensions: it has joints that the dimensions lack,
-        such as points of a body on a rocker.
+        Whether to use the skeleton in any case, after comparing it with the dimensions. The skeleton has joints that
+        the dimensions lack, such as points of a body on a rocker.
 
     Returns
     -------
     Mechanism or None
-        None if the mechanism cannot be assembled, or if its dimensions exceed the limits of any statement.
+        None if the mechanism cannot be assembled, or if its dimensions exceed the limits of statements.
     """
     stated = mechanism.model_dump()
     if is_known_by_dimensions(stated["type"]) and not from_skeleton:
-        # The dimensions are sufficient: building from them proves that they are complete and correct.
+        # Building from the dimensions alone proves that they are complete and correct.
         del stated["skeleton"]
     try:
         return _GIVEN_ADAPTER.validate_python(stated).build_mechanism()

@@ -1,4 +1,4 @@
-"""Extremes of quantities of a driven mechanism: found on a grid, then refined without derivatives."""
+"""Extremes of quantities of a driven mechanism, found on a grid and then refined without derivatives."""
 
 from __future__ import annotations
 
@@ -18,32 +18,33 @@ GRID_SIZE = 1441
 """Number of inputs of the first grid: a quarter of a degree over a full turn."""
 
 SAMPLE_COUNT, REFINEMENT_COUNT = 17, 6
-"""Inputs in each refinement around a local minimum, and number of refinements: 8⁶ times finer than the grid."""
+"""Number of inputs in each refinement around a local minimum, and number of refinements. Each divides the step by 8, so
+that the last step is 8⁶ times finer than the grid."""
 
 MAX_VALLEYS = 8
-"""Maximum number of local minima to refine: an evenly distributed error has several of nearly equal depth."""
+"""Maximum number of local minima to refine: an error with equal extremes has several minima of nearly equal depth."""
 
 
 def find_minimum_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
-    """Find the minimum of a quantity by finer and finer grids around the lowest points of a given grid.
+    """Find the minimum of a quantity by successively finer grids around the lowest points of a given grid.
 
     Parameters
     ----------
     of : callable
-        The quantity at inputs (n,), shape (n,); not finite at inputs without a position (by rounding also at a toggle)
-        or without a value.
+        Returns the quantity, shape (n,), at inputs of shape (n,). It is not finite where the mechanism cannot be
+        assembled (by rounding also at a toggle) or the quantity has no value.
     inputs, values : ndarray, shape (m,), m >= 2
-        The grid, increasing or decreasing, in the unit of the input (radians or a length), whose ends limit the search;
-        and the quantity there.
+        The grid of inputs, increasing or decreasing, in the unit of the input (radians or a length), and the quantity
+        there. The ends of the grid limit the search.
 
     Returns
     -------
     tuple of float
-        The input and the minimum of the finite values; both NaN if the grid has none.
+        The input at which the minimum occurs, and the minimum; both are NaN if the grid has no finite value.
     """
     if not np.isfinite(values).any():
         return math.nan, math.nan
-    # Infinity sorts behind all values, so inputs without a position are never minima.
+    # Infinity sorts behind all values, so inputs without a value are never minima.
     known = np.where(np.isfinite(values), values, np.inf)
     n = int(np.argmin(known))
     best = float(inputs[n]), float(known[n])
@@ -57,10 +58,10 @@ def find_minimum_near(of: Callable[[Real], Real], inputs: Real, values: Real) ->
 def _find_valleys(values: Real) -> NDArray[np.int64]:
     """Return the grid points near which the minimum may lie, lowest first.
 
-    Between its neighbours a smooth quantity falls below a local minimum of the grid by less than the rise to the higher
-    neighbour.
+    Near a local minimum of the grid, a smooth quantity falls below it by less than the rise to the higher neighbour. So
+    a point is kept only if its value minus this rise is at most the minimum of the grid.
     """
-    # At the ends the missing neighbour counts as equal.
+    # The missing neighbour of an end counts as equal to the end.
     left, right = np.append(values[:1], values[:-1]), np.append(values[1:], values[-1:])
     known = np.isfinite(values)
     # Replace infinities before subtracting, because ∞ − ∞ is NaN.
@@ -70,22 +71,22 @@ def _find_valleys(values: Real) -> NDArray[np.int64]:
 
 
 def _refine_minimum(of: Callable[[Real], Real], inputs: Real, places: NDArray[np.int64]) -> tuple[Real, Real]:
-    """Refine the minima around several grid points at once; infinite for a point without finite values."""
+    """Refine the minima around several grid points at once; return inputs and values, infinite if none is finite."""
     at, place, least = inputs[places], np.full(len(places), np.nan), np.full(len(places), np.inf)
     gaps = np.abs(np.diff(inputs))
-    # Half-width of the first refinement: the larger neighbouring gap, so that uneven grids are covered.
+    # The half-width of the first refinement is the larger neighbouring gap, so that uneven grids are covered.
     step = np.maximum(gaps[np.maximum(places - 1, 0)], gaps[np.minimum(places, len(gaps) - 1)])
     low, high = sorted((inputs[0], inputs[-1]))
     row = np.arange(len(places))
     for _ in range(REFINEMENT_COUNT):
-        # Clip, because inputs outside the given range do not belong to the motion.
+        # Inputs outside the given range do not belong to the motion.
         closer = np.clip(np.linspace(at - step, at + step, SAMPLE_COUNT, axis=1), low, high)
         refined = np.asarray(of(closer.ravel())).reshape(closer.shape)
         # A quantity without a value never wins the minimum.
         refined = np.where(np.isfinite(refined), refined, np.inf)
         k = refined.argmin(axis=1)
         tried = refined[row, k]
-        # Recentre only on a finite value.
+        # Move the centre only to an input with a finite value.
         at = np.where(np.isfinite(tried), closer[row, k], at)
         nearer = tried < least
         place, least = np.where(nearer, at, place), np.where(nearer, tried, least)
@@ -95,12 +96,15 @@ def _refine_minimum(of: Callable[[Real], Real], inputs: Real, places: NDArray[np
 
 
 def find_minimum(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
-    """Find the minimum of a quantity between the first and the last input, given its values on a grid."""
+    """Find the minimum of a quantity of a mechanism between the first and the last input of a grid.
+
+    ``values`` are those of the quantity ``of`` at ``inputs``.
+    """
     return find_minimum_near(lambda closer: of(drive(mechanism, closer, order=1)), inputs, values)[1]
 
 
 def find_extremes(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
-    """Find the minimum and the maximum of a quantity."""
+    """Find the minimum and the maximum of a quantity; parameters are those of :func:`find_minimum`."""
     least = find_minimum(mechanism, inputs, values, of)
     # The maximum is the minimum of the negative.
     return least, -find_minimum(mechanism, inputs, -values, lambda motion: -of(motion))
@@ -111,16 +115,16 @@ def find_min_transmission_angles(
 ) -> dict[str, float]:
     """Find the minimum transmission angle at each closure between the first and the last input.
 
-    It is 0 if the closure never closes, or if it fails between grid points at which it closes.
+    It is 0 if the closure cannot be assembled at any input, or if it cannot be somewhere between the grid points.
 
     Parameters
     ----------
     at : callable
-        Drives the mechanism to inputs (n,).
+        Drives the mechanism to inputs of shape (n,).
     inputs : ndarray, shape (m,), m >= 2
         Grid of inputs; :data:`GRID_SIZE` inputs suffice for a turn.
     motion : MechanismMotion, optional
-        The motion there, from a caller that has it.
+        The motion at these inputs, if the caller already has it.
 
     Returns
     -------
@@ -132,7 +136,7 @@ def find_min_transmission_angles(
 
         def evaluate_sine(closer: Real, link: str = link) -> Real:
             there = at(closer)
-            # Beyond its limit a closure has no sine; the sine was 0 at the limit. A triad has no margin of its own.
+            # Beyond its limit a closure has no sine, and at the limit the sine is 0. A triad has no margin of its own.
             beyond = there.margins[link][0] < 0.0 if link in there.margins else ~there.valid
             return np.where(beyond, 0.0, np.abs(there.sines[link]))
 

@@ -1,4 +1,4 @@
-"""Checks of the workspace on a finished linkage, common to all kinds and made after the kind's own checks."""
+"""Check of a finished linkage against its workspace, common to all kinds and done after the kind's own checks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ Design = TypeVar("Design", bound=VerifiedDesign)
 
 
 def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | None:
-    """Return a verified design with the checks of its workspace; unchanged without a workspace or if it has them.
+    """Return a verified design with the checks of its workspace.
+
+    A design that already has these checks is returned unchanged, as is any design if there is no workspace.
 
     Parameters
     ----------
@@ -28,16 +30,17 @@ def check_workspace_of_design(problem: ProblemBase, design: Design) -> Design | 
 
     Returns
     -------
-    The design, or None if no mechanism can be built from its dimensions.
+    Design or None
+        None if no mechanism can be built from the dimensions of the design.
     """
     if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.is_empty:
         return design
     # Every design of a linkage problem is a driven linkage.
     verified = cast(DrivenDesign, design)
-    # The kind has checked the workspace itself, with knowledge that is not available here.
+    # In this case the kind itself has checked the workspace, with knowledge that is not available here.
     if any(check.name in WORKSPACE_CHECKS for check in verified.verification.checks):
         return design
-    # The skeleton has joints that dimensions lack but links and bodies need.
+    # The outlines of links and bodies need joints that only the skeleton contains.
     mechanism = rebuild_mechanism(verified.mechanism, from_skeleton=True)
     if mechanism is None:
         return None

@@ -1,4 +1,4 @@
-"""Check of a finished linkage against its workspace: pivots in their zones, and a motion clear of box and obstacles.
+"""Checks of a finished linkage against its workspace: pivots in their zones, and a motion without collisions.
 
 The mechanism is rebuilt from its answer and swept over its motion (:mod:`kinematics.linkage.clearance`), so that no
 contact between two positions is missed. An undecided check counts as failed.
@@ -28,14 +28,20 @@ WORKSPACE_CHECKS = ("fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles
 """Names of the workspace checks."""
 
 BODY_POINT = "P"
-"""Name of the body's point; only the link that carries the body has this joint."""
+"""Name of the body's point P, a joint that only the link with the body has."""
 
 
 class FirstPosition(NamedTuple):
     """The body in its first position, as requested and as reached by the linkage.
 
-    ``point`` and ``angle`` (radians) are requested; ``met`` is the place of P in the reference, and ``turned`` the
-    body's rotation there from the requested angle.
+    Attributes
+    ----------
+    point : complex
+        Requested position of P.
+    met : complex
+        Position of P in the reference configuration.
+    turned : float
+        Rotation of the body in the reference configuration from the requested angle, radians.
     """
 
     point: complex
@@ -47,7 +53,7 @@ class FirstPosition(NamedTuple):
         return np.asarray(self.point + (places - self.met) * np.exp(-1j * self.turned))
 
     def map_to_reference(self, places: Complex) -> Complex:
-        """Map points on the body in its requested position to the reference configuration."""
+        """Map points of the body in its requested position to the reference configuration of the linkage."""
         return np.asarray(self.met + (places - self.point) * np.exp(1j * self.turned))
 
 
@@ -65,7 +71,7 @@ def check_space(
     used : VerifiedRange
         The motion over which it was verified.
     first : FirstPosition, optional
-        For a linkage that carries a body.
+        The first position of the body, for a linkage that carries one.
     """
     checks = []
     sides = _list_sides(mechanism)
@@ -76,7 +82,7 @@ def check_space(
         for zones, side in zip((demanded.input, demanded.output), sides, strict=True):
             if zones is not None:
                 gone = max(gone, _measure_zone_distance(zones, mechanism, side.moving if moving else side.fixed, first))
-        # An infinite distance (missing pivot) has no JSON number: report no value.
+        # The distance of a missing pivot is infinite, which is not a number in JSON: report no value.
         value = gone if math.isfinite(gone) else None
         checks.append(
             Check(name=WORKSPACE_CHECKS[moving], passed=gone == 0.0, value=value, limit=0.0, dimension=LENGTH)
@@ -85,18 +91,18 @@ def check_space(
 
 
 class _Side(NamedTuple):
-    """Names of the joints of a side; None for a missing pivot."""
+    """Names of the pivots of the input side or the output side; None for a missing pivot."""
 
     fixed: str | None
     moving: str | None
 
 
 def _list_sides(mechanism: Mechanism) -> tuple[_Side, _Side]:
-    """Return the sides of input and output."""
+    """Return the pivots of the input side and of the output side."""
     ground = mechanism.links[GROUND]
     crank = _Side("O2" if "O2" in ground else None, "A" if "A" in mechanism.joints else None)
     other = next((joint for joint in ("O4", "O5") if joint in ground), None)
-    # In a slider-crank A or B may be on the slide; a pivot there is not a pin of the output.
+    # If A is on a slide, B is not a pin of the output.
     pinned = "B" in mechanism.joints and not any(slide.joint == "A" for slide in mechanism.slides)
     output = _Side(other, "B" if pinned else None)
     # A driven slider is the input, so the sides change places.
@@ -126,7 +132,7 @@ def _check_sweep(space: Space, mechanism: Mechanism, used: VerifiedRange, first:
     moving = list_moving_parts(space, mechanism, first)
     checks = []
     if space.box is not None:
-        # Without a motion nothing is proven, so the check fails without a value.
+        # Without a motion nothing can be proven, so the check fails without a value.
         walls, away = _build_walls(space.box, mechanism, moving)
         nearest, kept = (None, False) if span is None else _measure_clearance(mechanism, moving, walls, span, away)
         # The walls are shifted outward by ``away``; a smaller clearance means that a part extends beyond its side.
@@ -142,13 +148,13 @@ def _check_sweep(space: Space, mechanism: Mechanism, used: VerifiedRange, first:
 
 
 def list_moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition | None) -> list[Part]:
-    """Return the hulls of the links' joints, and the body, in the reference configuration."""
+    """Return the moving parts in the reference configuration: the hulls of the links' joints, and the body."""
     body = space.body is not None and first is not None
     parts = []
     for link, joints in mechanism.links.items():
         if link == GROUND:
             continue
-        # The body's outline replaces P as the extent of its link.
+        # If the body has an outline, P does not extend the hull of its link.
         kept = [joint for joint in joints if not (body and joint == BODY_POINT)]
         hull = _build_hull(np.array([complex(mechanism.joints[joint]) for joint in kept]))
         parts.append(Part(link, hull, 0.5 * space.link_width))
@@ -159,7 +165,7 @@ def list_moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition |
 
 
 def find_carrier(mechanism: Mechanism) -> str:
-    """Return the name of the link that carries the body: the one with P."""
+    """Return the name of the link that carries the body, which has the joint P."""
     return next(link for link, joints in mechanism.links.items() if BODY_POINT in joints and link != GROUND)
 
 
@@ -174,16 +180,16 @@ def _build_hull(points: Complex) -> Complex:
 
 
 def _find_input_range(space: Space, mechanism: Mechanism, used: VerifiedRange) -> tuple[float, float] | None:
-    """Return the minimum and maximum input of the motion to check, radians or length units; None without one."""
+    """Return the minimum and maximum input of the motion to check, radians or length units; None if there is none."""
     if space.over == "used":
         ends = used.used_stroke
         if ends is None and used.used_range is not None:
-            # Ranges are in degrees in an answer, in radians in the core.
+            # An answer has degrees, the analysis core radians.
             ends = math.radians(used.used_range[0]), math.radians(used.used_range[1])
         return None if ends is None else (min(ends), max(ends))
     try:
         here = find_reference_branch(mechanism, find_branches(mechanism))
-    # A change point in the motion leaves the branch undefined, hence nothing is proven.
+    # A change point in the motion leaves the branch undefined, so nothing can be proven.
     except MechanismError:
         return None
     return None if here is None else MechanismOnBranch(mechanism, here).range
@@ -194,7 +200,7 @@ def _measure_clearance(
 ) -> tuple[float, bool]:
     """Return the minimum distance of moving parts from fixed ones, and whether it reaches the required one."""
     pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
-    # All pairs report their distance, because the answer states the minimum.
+    # Every pair must report its distance, because the answer contains the minimum.
     found = sweep_pairs(mechanism, [*moving, *fixed], pairs, *span, wanted, nearest="all")
     return min(pair.least for pair in found), all(pair.keeps for pair in found)
 
@@ -202,10 +208,11 @@ def _measure_clearance(
 def _build_walls(
     box: tuple[tuple[float, float], tuple[float, float]], mechanism: Mechanism, moving: list[Part]
 ) -> tuple[list[Part], float]:
-    """Build the four sides of a box, shifted outward beyond every part.
+    """Build the four sides of a box, shifted outward by a distance ``away`` that no part can bridge.
 
-    A part inside a side is at least ``away`` from the shifted side. A smaller distance is the amount by which the part
-    extends beyond the side; so violations are measured with the same sweep as obstacles.
+    A part within the box is at least ``away`` from every shifted side. If the distance is smaller, the difference is
+    the amount by which the part extends beyond the side. So the box is checked by the same sweep as obstacles.
+    Return the sides and ``away``.
     """
     (left, low), (right, high) = box
     places = np.array([complex(z) for z in mechanism.joints.values()])
@@ -213,7 +220,7 @@ def _build_walls(
     reach = float(np.abs(places - middle).max()) + sum(
         float(np.abs(part.points - part.points[0]).max()) for part in moving
     )
-    # Twice the largest possible excursion: a part never reaches the shifted side, where distance would become 0.
+    # Twice the largest possible excursion, so that no part reaches a shifted side, where the distance would become 0.
     away = 2.0 * (reach + abs(complex(right - left, high - low)) + max(part.radius for part in moving))
     x, y = (left - away, right + away), (low - away, high + away)
     corners = np.array([complex(x[0], y[0]), complex(x[1], y[0]), complex(x[1], y[1]), complex(x[0], y[1])])

@@ -1,4 +1,4 @@
-"""The site: the pages of ``docs/``, and beside them what is made of the code: references, a gallery, notebooks.
+"""Generator of the documentation site: the pages of ``docs/``, and references, a gallery and notebooks from the code.
 
-``python -m tools.site`` writes them all into one folder, of which mkdocs makes the site; ``make docs`` does both.
+``python -m tools.site`` gathers all pages in one folder and has mkdocs build the site from them. ``make docs`` runs it.
 """

@@ -1,4 +1,4 @@
-"""Make the site: ``python -m tools.site`` writes ``var/site``."""
+"""Build the documentation site: ``python -m tools.site`` writes ``var/site``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def main(out: Path) -> int:
-    """Gather the pages below a folder, and have mkdocs make the site of them; any warning is a failure."""
+    """Gather the pages below a folder and have mkdocs build the site from them; any warning is a failure."""
     folder = out / "pages"
     shutil.rmtree(folder, ignore_errors=True)
     pages.gathered(ROOT, folder)

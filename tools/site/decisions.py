@@ -1,4 +1,4 @@
-"""The list of the decisions of ``docs/decisions/``, and their titles."""
+"""The index page of the decisions in ``docs/decisions/``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ FOLDER = "decisions"
 
 
 def written(source: Path, folder: Path) -> list[tuple[str, str]]:
-    """Write the list of all decisions below a folder; returns their titles and paths there, for the nav."""
+    """Write the list of all decisions below a folder; return their titles and paths there for the navigation."""
     listed = [(path, *_titled(path)) for path in sorted(source.glob("[0-9]*.md"))]
     lines = "".join(f"{number}. [{title}]({path.name})\n" for path, number, title in listed)
     told = "What binds this project, and why it was decided so.\n\n"
@@ -20,6 +20,6 @@ def written(source: Path, folder: Path) -> list[tuple[str, str]]:
 
 
 def _titled(path: Path) -> tuple[int, str]:
-    """The number of a decision, by its file, and its heading without one."""
+    """Return the number of a decision from its file name, and its heading without the number."""
     heading = path.read_text("utf-8").split("\n", 1)[0].removeprefix("# ")
     return int(path.stem.split("-")[0]), re.sub(r"^\d+\. ", "", heading)

@@ -1,4 +1,4 @@
-"""Docstrings as Markdown: roles, double backticks and examples within the text become code."""
+"""Conversion of docstrings to Markdown: roles, double backticks and inline examples become code."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ _EXAMPLE = re.compile(r"(?:^|(?<=\n\n))>>> (?:.+\n?)+")
 
 
 def as_markdown(docstring: str) -> str:
-    """A docstring of reStructuredText as Markdown."""
+    """Convert a reStructuredText docstring to Markdown."""
     text = _LITERAL.sub(r"`\1`", _ROLE.sub(r"`\1`", docstring))
     return _EXAMPLE.sub(lambda example: f"```python\n{example[0].rstrip()}\n```\n", text)

@@ -1,8 +1,8 @@
-"""The gallery: solved machines, each made anew by the code that its page shows.
+"""The gallery: solved machines, each solved again at every build by the code that its page shows.
 
-An entry is a file of ``docs/gallery/``: its heading, a line for a person, the group that it stands in, a statement, and
-the places of the numbers that its page tells. What the page tells is read off the answer, which the library draws and
-moves.
+An entry is a file in ``docs/gallery/``. It has a heading, a one-line description, its group, a problem, and the JSON
+pointers to the numbers that its page shows. All numbers on a page come from the answer, and the library draws and
+animates the design.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ GROUPS = {
     "cams": "Cams",
     "forces": "Masses and springs",
 }
-"""The groups of entries, in the order of the page."""
+"""Headings of the groups of entries, in the order of the page."""
 
 FOLDER = "gallery"
 PROCESSES = 2
 SHOWN = ("svg", "gif")
-"""The drawings that a page shows, where there are such of its mechanism."""
+"""File formats that a page shows, if they are available for its mechanism."""
 
 WIDTH = 96
 STILL_WIDTH = 480
@@ -42,20 +42,20 @@ STILL_WIDTH = 480
 
 @dataclass(frozen=True)
 class Entry:
-    """A machine of the gallery, as it is stated.
+    """A machine of the gallery: its problem and the texts of its page.
 
     Attributes
     ----------
     name : str
-        Of its file, and of its page.
+        Name of its file and of its page, without suffix.
     title, line : str
-        Its heading; what it is, in a sentence.
+        Heading, and a one-sentence description.
     group : str
         One of :data:`GROUPS`.
     problem : dict
-        The statement.
+        Problem as JSON-like data.
     numbers : dict
-        Labels of numbers, with the JSON pointers at which the answer has them.
+        JSON pointers into the answer, by the labels of the numbers there.
     """
 
     name: str
@@ -67,12 +67,12 @@ class Entry:
 
 
 def entries(folder: Path) -> list[Entry]:
-    """All entries of a folder, by groups and then by names.
+    """Return all entries of a folder, sorted by group and then by name.
 
     Raises
     ------
     TypeError
-        For a file that has other fields than those of an entry.
+        If a file has missing or unknown fields.
     """
     listed = [Entry(path.stem, **json.loads(path.read_text("utf-8"))) for path in sorted(folder.glob("*.json"))]
     order = list(GROUPS)
@@ -80,14 +80,14 @@ def entries(folder: Path) -> list[Entry]:
 
 
 def at(answer: Any, pointer: str) -> Any:
-    """What stands at a JSON pointer of an answer; raises LookupError where there is nothing."""
+    """Return the value at a JSON pointer into an answer; raise LookupError if there is none."""
     for key in pointer.split("/")[1:]:
         answer = answer[int(key)] if isinstance(answer, list) else answer[key]
     return answer
 
 
 def written(source: Path, folder: Path, told: Callable[[str], None] = print) -> list[tuple[str, str]]:
-    """Make all entries and write their pages below a folder; returns their titles and paths there, for the nav."""
+    """Solve all entries and write their pages below a folder; return titles and paths there for the navigation."""
     listed = entries(source)
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
@@ -98,13 +98,13 @@ def written(source: Path, folder: Path, told: Callable[[str], None] = print) -> 
 
 
 def _made(entry: Entry, folder: Path) -> str:
-    """Make an entry and its page, in a process of its own; returns its name."""
+    """Solve an entry, write its page, and return its name; runs in a worker process."""
     place = folder / FOLDER / entry.name
     place.mkdir(parents=True, exist_ok=True)
     os.chdir(place)
     known: dict[str, Any] = {"print": lambda *_: None}
     solving = solving_code(entry)
-    exec(compile(solving, f"{entry.name}.py", "exec"), known)  # the page shows what has run
+    exec(compile(solving, f"{entry.name}.py", "exec"), known)  # so the page shows exactly the code that was run
     result = known["result"]
     if not result.designs or not result.designs[0].passed:
         raise ValueError(f"{entry.name}: no design passed: {result.summary}")
@@ -122,7 +122,7 @@ def _made(entry: Entry, folder: Path) -> str:
 
 
 def solving_code(entry: Entry) -> str:
-    """The program that solves an entry."""
+    """Return the Python code that solves an entry."""
     lines = [
         "from mechsynth import solve",
         "",
@@ -134,12 +134,12 @@ def solving_code(entry: Entry) -> str:
 
 
 def drawing_code(entry: Entry, forms: Iterable[str]) -> str:
-    """What it says further, to write the files that the page shows into the folder that it runs in."""
+    """Return the Python code that follows the solution and writes the page's drawings to the current folder."""
     return "".join(f'result.designs[0].to_{form}("{entry.name}.{form}")\n' for form in forms)
 
 
 def shell_code(entry: Entry, forms: Iterable[str]) -> str:
-    """The same of a running service."""
+    """Return shell commands that solve an entry and fetch its drawings from a running service."""
     body = laid_out({"problem": entry.problem, "label": entry.title}, json.dumps)
     drawings = [f'curl -s "$SERVICE/v1/jobs/$JOB/designs/0.{form}" -o {entry.name}.{form}' for form in forms]
     lines = [
@@ -153,7 +153,10 @@ def shell_code(entry: Entry, forms: Iterable[str]) -> str:
 
 
 def laid_out(value: Any, literal: Callable[[Any], str], indent: str = "") -> str:
-    """A value as JSON or as Python, by how its leaves are written: on one line where there is room for it."""
+    """Format a value as JSON or Python code, on one line if it fits.
+
+    ``literal`` formats numbers, booleans and null: ``json.dumps`` gives JSON, ``repr`` gives Python.
+    """
     flat = _flat(value, literal)
     if len(indent) + len(flat) <= WIDTH or not isinstance(value, dict | list) or not value:
         return flat
@@ -169,7 +172,7 @@ def laid_out(value: Any, literal: Callable[[Any], str], indent: str = "") -> str
 
 
 def _quoted(text: str) -> str:
-    """A text as JSON and as Python have it."""
+    """Return a text as a string literal that is valid in both JSON and Python."""
     return json.dumps(text, ensure_ascii=False)
 
 
@@ -182,7 +185,7 @@ def _flat(value: Any, literal: Callable[[Any], str]) -> str:
 
 
 def _still(animation: Path) -> bytes:
-    """The first frame of an animation, PNG."""
+    """Return the first frame of an animation as PNG."""
     from PIL import Image
 
     with Image.open(animation) as frames:
@@ -232,7 +235,7 @@ def _fenced(language: str, code: str) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value of an answer for a person: numbers to six digits."""
+    """Format a value of an answer for reading, with numbers to six digits."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -243,7 +246,7 @@ def shown(value: Any) -> str:
 
 
 def _index(listed: list[Entry], folder: Path) -> str:
-    """The page of all machines."""
+    """Return the index page, which shows all machines by group."""
     text = [
         f"---\nhide: [toc]\n---\n# Gallery\n\n{len(listed)} machines, each stated as a problem, solved and driven by "
         "the program that its page shows when this site was built. Point at one to see it move.\n\n"

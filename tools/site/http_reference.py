@@ -1,7 +1,7 @@
-"""The pages of the HTTP reference, made of the OpenAPI document: operations, and the models of each kind of problem.
+"""Pages of the HTTP reference, generated from the OpenAPI document: operations, and the models of each kind of problem.
 
-A model that only one kind of problem uses stands on the page of that kind, under its statement or its answer; what
-several kinds state, what several kinds answer, and what else operations take and give, on a page each.
+A model that only one kind of problem uses is on the page of that kind, under its statement or its answer. Three further
+pages have the models shared by several statements, those shared by several answers, and all other models of operations.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SHARED = {
     ANSWERED: ("Shared in answers", "What the answers of several kinds of problems have in common, by name."),
     OTHERS: ("Jobs, batches, analyses", "What operations take and give beside problems and their answers, by name."),
 }
-"""The pages of models that are of no single kind: their headings, and what stands below these."""
+"""Heading and introduction of each page of models that belong to no single kind."""
 
 FOLDER = "reference/http"
 OPERATIONS = "operations.md"
@@ -36,7 +36,7 @@ _LIMITS = (
 
 
 def http_reference(document: Schema) -> dict[str, str]:
-    """The pages by their file names.
+    """Return the pages of the reference by file name.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def http_reference(document: Schema) -> dict[str, str]:
 
 
 def problems(models: Schema) -> dict[str, str]:
-    """The models of statements by their kinds of problem, in the order of the kinds' names."""
+    """Return the name of the problem model of each kind, sorted by kind."""
     found = {}
     for name, model in models.items():
         kind = model.get("properties", {}).get("kind", {}).get("const")
@@ -66,7 +66,7 @@ def problems(models: Schema) -> dict[str, str]:
 
 
 def anchor(name: str) -> str:
-    """The anchor of a model on its page."""
+    """Return the anchor of a model on its page."""
     return f"model-{name.lower().strip('_').replace('_', '-')}"
 
 
@@ -75,13 +75,13 @@ def _page(kind: str) -> str:
 
 
 def _result(kind: str, models: Schema) -> str:
-    """The model of a kind's answers: the one whose name begins as that of its statement does."""
+    """Return the name of the result model of a kind, which begins like that of its problem model."""
     name: str = problems(models)[kind].removesuffix("Problem") + "Result"
     return name
 
 
 def _references(schema: Any) -> Iterator[str]:
-    """The models that a schema names, nested ones included."""
+    """Yield the names of the models to which a schema refers, at any depth."""
     if isinstance(schema, dict):
         target = schema.get("$ref")
         if isinstance(target, str) and target.startswith(_PREFIX):
@@ -105,7 +105,7 @@ def _reached(start: str, models: Schema) -> set[str]:
 
 
 def _places(models: Schema) -> dict[str, str]:
-    """The page on which each model stands."""
+    """Return the page of each model, by model name."""
     stating: dict[str, set[str]] = {name: set() for name in models}
     answering: dict[str, set[str]] = {name: set() for name in models}
     for kind, problem in problems(models).items():
@@ -140,11 +140,11 @@ def _kind_page(page: str, kind: str, models: Schema, places: dict[str, str]) -> 
 
 
 GUIDES = {"layshaft_gearbox": "tasks/gearbox.md"}
-"""The pages of kinds that have none of their own name."""
+"""Guide pages of kinds whose page does not have the kind's own name."""
 
 
 def guide(kind: str) -> str:
-    """The page of ``docs/`` that tells of a kind of problem."""
+    """Return the page of ``docs/`` that describes a kind of problem."""
     return GUIDES.get(kind, f"tasks/{kind}.md")
 
 
@@ -153,7 +153,7 @@ def _first(head: str, names: set[str]) -> list[str]:
 
 
 def _model(name: str, model: Schema, places: dict[str, str], page: str, level: str) -> str:
-    """A heading, what the model is, and a table of its fields."""
+    """Return the section of a model: heading, description and a table of its fields."""
     lines = [f"{level} {name} {{ #{anchor(name)} }}\n"]
     if model.get("description"):
         lines.append(f"{_plain(model['description'])}\n")
@@ -171,7 +171,7 @@ def _model(name: str, model: Schema, places: dict[str, str], page: str, level: s
 
 
 def _plain(text: str) -> str:
-    """A description as Markdown: reStructuredText's double backticks are single ones, brackets are no links."""
+    """Convert a description to Markdown: double backticks become single ones, and brackets are escaped."""
     parts = text.replace("``", "`").strip().split("`")
     return "`".join(part if n % 2 else part.replace("[", "\\[") for n, part in enumerate(parts))
 
@@ -181,7 +181,7 @@ def _cell(text: str) -> str:
 
 
 def _type(schema: Schema, places: dict[str, str], page: str) -> str:
-    """What a value may be, with links to models."""
+    """Describe the type of a value, with links to the models in it."""
     if "$ref" in schema:
         name = schema["$ref"].removeprefix(_PREFIX)
         where = "" if places[name] == page else places[name]
@@ -234,7 +234,7 @@ def _meaning(schema: Schema) -> str:
 
 
 def _operations(document: Schema, places: dict[str, str]) -> str:
-    """The page of the operations, by their tags."""
+    """Return the page of all operations, grouped by tag."""
     text = [f"# Operations\n\n{_plain(document['info']['description'])}\n\n"]
     for tag in document["tags"]:
         text.append(f"## {tag['name'].capitalize()}\n\n{tag.get('description', '')}\n\n")
@@ -271,7 +271,7 @@ def _operation(path: str, method: str, operation: Schema, places: dict[str, str]
 
 
 def written(document: Schema, folder: Path) -> list[tuple[str, str]]:
-    """Write the pages of a document below a folder; returns their titles and paths there, for the nav."""
+    """Write the pages for a document below a folder; return their titles and paths there for the navigation."""
     pages = http_reference(document)
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
     for name, text in pages.items():

@@ -1,4 +1,4 @@
-"""The notebooks of ``docs/notebooks/``, run anew, as pages of the site."""
+"""Pages of the site from the notebooks in ``docs/notebooks/``, which are executed at every build."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ CELL_TIMEOUT_S = 120
 
 
 def executed(path: Path) -> Any:
-    """A notebook with the outputs of its run.
+    """Execute a notebook and return it with its outputs.
 
     Raises
     ------
     nbclient.exceptions.CellExecutionError
-        Where a cell raises.
+        If a cell raises an exception.
     """
     import nbformat
     from nbclient import NotebookClient
@@ -30,7 +30,7 @@ def executed(path: Path) -> Any:
 
 
 def as_page(notebook: Any) -> str:
-    """A notebook that has run, as Markdown: its texts, its code and what that put out."""
+    """Convert an executed notebook to Markdown: its text, its code and the outputs."""
     parts = []
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
@@ -42,7 +42,7 @@ def as_page(notebook: Any) -> str:
 
 
 def _joined(outputs: list[Any]) -> list[Any]:
-    """The outputs of a cell, of which what was printed comes in pieces."""
+    """Return the outputs of a cell with consecutive pieces of printed text joined."""
     joined: list[Any] = []
     for output in outputs:
         if joined and output.output_type == joined[-1].output_type == "stream":
@@ -53,7 +53,7 @@ def _joined(outputs: list[Any]) -> list[Any]:
 
 
 def _shown(output: Any) -> str:
-    """An output: HTML or a drawing as such, everything else as text."""
+    """Return an output as HTML or as a drawing if it has such a form, otherwise as text."""
     if output.output_type == "stream":
         return _text(output.text)
     data = output.get("data", {})
@@ -69,7 +69,10 @@ def _text(text: str) -> str:
 
 
 def written(source: Path, folder: Path) -> list[tuple[str, str]]:
-    """Run all notebooks of a folder and write their pages below another; returns titles and paths, for the nav."""
+    """Execute all notebooks of a folder and write their pages below another.
+
+    Return the titles and paths of the pages for the navigation.
+    """
     pages = []
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
     for path in sorted(source.glob("*.ipynb")):

@@ -1,4 +1,4 @@
-"""The pages of ``docs/`` as pages of the site, and sources that they link to as pages of their own."""
+"""Pages of the site from ``docs/``, and a page for each source file to which they link."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 SOURCES = "sources"
-"""The folder of the pages that show sources."""
+"""Folder of the pages that show source files."""
 
 TASKS = "tasks.md"
-"""The page of all tasks, which is the table of the README."""
+"""Page of all tasks, generated from the table in the README."""
 
 _LINK = re.compile(r"(\]\()((?:\.\./)+[^)\s#]+)(#[^)\s]*)?(\))")
 _CHECK = re.compile(r"^\| (`\w[^|]*`) \|", re.MULTILINE)
@@ -22,9 +22,9 @@ _FOLDER = re.compile(r"^(?P<indent> +)- (?:(?P<title>[^:\n]+): )?(?P<folder>\S+)
 
 
 def gathered(root: Path, folder: Path) -> None:
-    """Copy everything of ``docs/`` that a site shows into a folder.
+    """Copy everything in ``docs/`` that the site shows into a folder.
 
-    Links that lead out of ``docs/`` lead to pages with the sources, which are written too.
+    Links to files outside ``docs/`` are changed to point to pages that show these files; those pages are written, too.
     """
     docs = root / "docs"
     linked: set[str] = set()
@@ -49,7 +49,7 @@ def gathered(root: Path, folder: Path) -> None:
 
 
 def _within_the_site(text: str, at: Path, root: Path) -> tuple[str, set[str]]:
-    """A page whose links to sources lead to their pages, and the sources by their paths from the root."""
+    """Return a page with links to source files changed to their pages, and the paths of these files from the root."""
     linked = set()
 
     def turned(found: re.Match[str]) -> str:
@@ -65,7 +65,7 @@ def _within_the_site(text: str, at: Path, root: Path) -> tuple[str, set[str]]:
 
 
 def _tasks(readme: str, docs: Path) -> str:
-    """The section of the README on what it solves, as a page: links have the headings of their pages."""
+    """Return the README's section "What it solves" as a page, with the headings of the linked pages as link texts."""
     section = readme.split("## What it solves\n", 1)[1].split("\n## ", 1)[0]
 
     def named(link: re.Match[str]) -> str:
@@ -77,13 +77,16 @@ def _tasks(readme: str, docs: Path) -> str:
 
 
 def check_anchor(name: str) -> str:
-    """The anchor of a check on its page: of numbered ones, and of those of a joint, the same for all."""
+    """Return the anchor of a check on the page of checks.
+
+    Checks that differ only in a number, or in the name of a joint, share an anchor.
+    """
     own = re.sub(r"^max_joint_.+", "max_joint_n", re.sub(r"^unit_\d+_", "", name))
     return "check-" + re.sub(r"<\w+>|(?<=_)\d+", "n", own).replace("_", "-")
 
 
 def anchored(text: str) -> str:
-    """The page of checks with an anchor at each name in the first column of its tables, where it comes first."""
+    """Return the page of checks with an anchor at the first occurrence of each name in the first columns of tables."""
     known: set[str] = set()
 
     def marked(row: re.Match[str]) -> str:
@@ -109,14 +112,14 @@ def _write_source(root: Path, name: str, page: Path) -> None:
 
 
 def settings(template: str, folders: Mapping[str, Iterable[tuple[str, str]]]) -> str:
-    """The settings of the site with its nav complete.
+    """Return the settings of the site with a complete navigation.
 
     Parameters
     ----------
     template : str
-        The settings, in whose nav entries that end in a slash stand for folders.
+        Settings in which an entry of the navigation that ends in a slash stands for all pages of a folder.
     folders : mapping
-        The pages of each such folder, as titles (empty for the page's own) and paths.
+        Title and path of each page, by folder. With an empty title, the heading of the page is used.
     """
 
     def entries(found: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""The pages of the Python reference, which mkdocstrings fills with the docstrings of the modules that they name."""
+"""Pages of the Python reference; mkdocstrings fills them with the docstrings of the modules that they name."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LIBRARY = (
     "mechsynth.progress",
     "service.client",
 )
-"""What the library is made of, by modules. Its problems are the statements of the HTTP reference."""
+"""Modules of the library that are documented. Its problem classes are the statements in the HTTP reference."""
 
 SOLVERS = ("synthesis.dispatch", "synthesis.registry", "synthesis.analyses")
 
@@ -21,7 +21,7 @@ _FOLDER = Path("reference") / "python"
 
 
 def written(root: Path, folder: Path) -> list[tuple[str, str]]:
-    """Write the pages below a folder; returns their titles and paths there, for the nav."""
+    """Write the pages below a folder; return their titles and paths there for the navigation."""
     pages = [("mechsynth", "The library", LIBRARY), ("synthesis", "Solvers", SOLVERS)]
     for package in sorted(path.parent for path in (root / "kinematics").glob("*/__init__.py")):
         modules = tuple(_modules(root, package))
@@ -37,7 +37,7 @@ def written(root: Path, folder: Path) -> list[tuple[str, str]]:
 
 
 def _modules(root: Path, package: Path) -> Iterator[str]:
-    """The public modules of a package with those of its packages: kernels, which others call, are none."""
+    """Yield the public modules of a package and its subpackages; kernels are internal and are left out."""
     for path in sorted(package.rglob("*.py")):
         if not path.stem.startswith("_") and not path.stem.endswith(("kernel", "kernels")) and path.stem != "warm":
             yield ".".join(path.relative_to(root).with_suffix("").parts)

@@ -1,4 +1,4 @@
-"""What mkdocstrings reads docstrings with: they are Markdown when it sees them."""
+"""Extension of griffe that converts docstrings to Markdown before mkdocstrings renders them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from tools.site.docstrings import as_markdown
 
 
 class Roles(griffe.Extension):
-    """Rewrites each docstring when its object is read."""
+    """Converts the docstring of each object when griffe loads the object."""
 
     def on_object(self, *, obj: griffe.Object, **_rest: Any) -> None:
-        """Rewrite the docstring of an object."""
+        """Convert the docstring of an object to Markdown."""
         if obj.docstring is not None:
             obj.docstring.value = as_markdown(obj.docstring.value)

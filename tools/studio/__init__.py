@@ -1,1 +1,1 @@
-"""Makes what the studio shows before anybody has asked for anything, from the answers of a running service."""
+"""Programs that generate files of the studio from the answers of a running service, and collect its texts and types."""

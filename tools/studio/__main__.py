@@ -1,4 +1,7 @@
-"""Write the studio's files that are answers of the service: ``python -m tools.studio URL`` of a service that runs."""
+"""Update the files of the studio that contain answers of the service: ``python -m tools.studio URL``.
+
+URL is the address of a running service.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ FOLDER = Path(__file__).parents[2] / "service" / "studio"
 
 
 def main() -> None:
-    """Ask the service, and write what the page shows of its answers."""
+    """Query the service and write the files of the page that show its answers."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("url", help="where a service without keys runs, as http://127.0.0.1:8000")
     parser.add_argument("--only", choices=("opening", "gallery"), help="one of the files; both where it is not said")

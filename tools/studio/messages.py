@@ -1,7 +1,7 @@
-"""What the page says, to be translated: ``python -m tools.studio.messages de`` lists what is missing and what is left.
+"""Texts of the studio for translation: ``python -m tools.studio.messages de`` lists missing and obsolete messages.
 
-Texts are collected where they are: those of the page from its modules and its markup, those of the service from the
-kinds of problems, their schemas, and the names of what answers hold. English itself is the key of a message.
+Texts are collected from their sources: those of the page from its modules and its markup, those of the service from the
+kinds of problems, their schemas, and the names of the fields in answers. The key of a message is the English text.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ _CHECK = re.compile(
     r"|^[A-Z_]+ = \"([a-z]+_[a-z_]+|outranked)\"$",
     re.MULTILINE,
 )
-"""Names of checks and of reasons for which candidates are left out, as modules say them."""
+"""Pattern of the names of checks, and of the reasons for excluding candidates, in the source of modules."""
 
 _PROGRESS = re.compile(r"\bprogress\(\s*[^\n]*,\s+(f?)\"((?:[^\"{\n]|\{[^}\n]*\})*)\",?\s*\)")
 _VALUE = re.compile(r"\{[^}]*\}")
 
 STATES = ("queued", "running", "succeeded", "failed", "cancelled")
-"""Of jobs."""
+"""States of jobs."""
 
 SHAPES = ("polygon", "rectangle", "circle")
-"""Which areas of the room are drawn as."""
+"""Shapes of the areas in a workspace."""
 
 NOT_TOLD = {"type", "skeleton", "profile", "pitch_curve", "program", "outer_wall", "lower_wall", "upper_wall"}
 """Parts of a mechanism that the page does not list among the dimensions."""
 
 
 def messages(language: str) -> dict[str, str]:
-    """What the page says in a language, by what it says in English."""
+    """Return the translated messages of a language, by their English texts."""
     read: dict[str, str] = json.loads((STUDIO / "messages" / f"{language}.json").read_text("utf-8"))
     return read
 
 
 def spoken() -> list[str]:
-    """All that has to be translated, each text once."""
+    """Return all texts to be translated, without duplicates."""
     return list(dict.fromkeys([*of_the_page(), *of_the_service(), *names(), *progress()]))
 
 
@@ -61,7 +61,7 @@ def studio_modules() -> list[Path]:
 
 
 def of_the_page() -> Iterator[str]:
-    """Texts of the modules and of the markup."""
+    """Yield the texts of the page's modules and of its markup."""
     for module in studio_modules():
         yield from tagged(module.read_text("utf-8"))
     markup = _Markup()
@@ -70,7 +70,7 @@ def of_the_page() -> Iterator[str]:
 
 
 def tagged(source: str) -> Iterator[str]:
-    """Keys of the templates of a module that have the tag ``t``.
+    """Yield the message keys of the template literals in a module that have the tag ``t``.
 
     >>> list(tagged("el(t`Design ${n + 1} of ${`${all}`}`, t`none`)"))
     ['Design {0} of {1}', 'none']
@@ -80,7 +80,7 @@ def tagged(source: str) -> Iterator[str]:
 
 
 def _template(source: str, at: int) -> tuple[str, int]:
-    """The key of the template whose text begins there, and where it ends."""
+    """Return the key of the template literal whose text starts at ``at``, and the index after its end."""
     key, values = "", 0
     while source[at] != "`":
         if source.startswith("${", at):
@@ -95,7 +95,7 @@ def _template(source: str, at: int) -> tuple[str, int]:
 
 
 def _expression(source: str, at: int) -> int:
-    """Where the expression in a template ends."""
+    """Return the index after the end of the expression that starts at ``at`` in a template literal."""
     depth = 1
     while depth:
         if source[at] == "`":
@@ -109,7 +109,7 @@ def _expression(source: str, at: int) -> int:
 
 
 class _Markup(HTMLParser):
-    """Texts of a page, and the attributes that are read to a person; what states its language is left alone."""
+    """Collects the texts of a page and of its attributes, except those of ``noscript`` elements."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -117,18 +117,18 @@ class _Markup(HTMLParser):
         self.foreign = False
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Take what is read of an element."""
+        """Collect the attributes of an element that contain text for readers."""
         self.foreign = tag == "noscript" or (self.foreign and tag != "script")
         told = dict(attrs)
         if tag not in ("link", "html") and not (tag == "meta" and told.get("name") != "description"):
             self.texts += [_bare(text) for name in _READ if (text := told.get(name))]
 
     def handle_endtag(self, tag: str) -> None:
-        """Go on after what states its language."""
+        """Resume the collection after an element that was skipped."""
         self.foreign = self.foreign and tag != "noscript"
 
     def handle_data(self, data: str) -> None:
-        """Take a text."""
+        """Collect a text."""
         if not self.foreign and re.search(r"[A-Za-z]", data):
             self.texts.append(_bare(data))
 
@@ -138,7 +138,7 @@ def _bare(text: str) -> str:
 
 
 def of_the_service() -> Iterator[str]:
-    """Titles, lines and descriptions of the kinds of problems, their examples and their fields."""
+    """Yield the titles, one-line texts and descriptions of the kinds of problems, of their examples and fields."""
     for name, kind in KINDS.items():
         yield kind.problem.model_config.get("title") or name
         yield prose(inspect.getdoc(kind.problem) or "")
@@ -151,12 +151,12 @@ def of_the_service() -> Iterator[str]:
 
 @cache
 def _schemas(kind: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Of the statements of a kind, and of their answers."""
+    """Return the JSON schemas of the problems of a kind and of their results."""
     return KINDS[kind].problem.model_json_schema(), KINDS[kind].result.model_json_schema()
 
 
 def prose(description: str) -> str:
-    """The first paragraph of a description, as the page shows it.
+    """Return the first paragraph of a description, as the page shows it.
 
     >>> prose("Of the `crank`,\\nin degrees.\\n\\nMore.")
     'Of the crank, in degrees.'
@@ -165,7 +165,7 @@ def prose(description: str) -> str:
 
 
 def _fields(schema: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """The schemas of all fields, however deep."""
+    """Yield the schemas of all fields at any depth, each with the root schema."""
     for node in _nodes(schema):
         for field in node.get("properties", {}).values():
             yield field, schema
@@ -179,7 +179,7 @@ def _nodes(schema: Any) -> Iterator[dict[str, Any]]:
 
 
 def _description(field: dict[str, Any], root: dict[str, Any]) -> str:
-    """Of a field, or of the only thing that it can be."""
+    """Return the description of a field, or that of its only type other than null."""
     if "description" in field:
         return str(field["description"])
     options = [one for one in _options(field, root) if one.get("type") != "null"]
@@ -194,7 +194,7 @@ def _options(schema: dict[str, Any], root: dict[str, Any]) -> list[dict[str, Any
 
 
 def names() -> Iterator[str]:
-    """Names of fields, choices, quantities, checks and dimensions, as they stand within a sentence."""
+    """Yield the names of fields, choices, metrics, checks and dimensions, in the form used within a sentence."""
     found: set[str] = {*STATES, *SHAPES, *KINDS}
     for kind in KINDS:
         statement, answer = _schemas(kind)
@@ -204,7 +204,7 @@ def names() -> Iterator[str]:
 
 
 def _named(schema: Any) -> set[str]:
-    """Names of fields and the words that they may have."""
+    """Return the names of fields, and the words that they may have as values."""
     found: set[str] = set()
     for node in _nodes(schema):
         found |= set(node.get("properties", {}))
@@ -213,7 +213,7 @@ def _named(schema: Any) -> set[str]:
 
 
 def _of_designs(root: dict[str, Any]) -> set[str]:
-    """Names of metrics that are one number or word, and of the dimensions of mechanisms."""
+    """Return the names of metrics that are a single number or word, and those of the dimensions of mechanisms."""
     found: set[str] = set()
     for definition in root["$defs"].values():
         design = definition.get("properties", {})
@@ -251,7 +251,7 @@ def _dimensions(schema: Any, root: dict[str, Any], seen: set[str]) -> set[str]:
 
 
 def progress() -> Iterator[str]:
-    """What jobs say of their progress, with places for what is counted."""
+    """Yield the progress messages of jobs, with numbered placeholders for their values."""
     for formatted, text in _PROGRESS.findall(_synthesis()):
         *before, last = _VALUE.split(text) if formatted else [text]
         yield "".join(f"{part}{{{k}}}" for k, part in enumerate(before)) + last
@@ -263,7 +263,7 @@ def _synthesis() -> str:
 
 
 def main() -> None:
-    """Print what a language lacks, as JSON to be filled in, and what nothing says any more."""
+    """Print the missing messages of a language as JSON to be filled in, and its messages that are no longer used."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("language", help="as de")
     here = messages(parser.parse_args().language)

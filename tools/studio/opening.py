@@ -1,7 +1,7 @@
-"""What moves on the studio's stage when its page opens: the first example of all, with the service's own answer.
+"""The mechanism that moves when the studio opens: the first example, with the answer of the service.
 
-The page shows it without a job, so that it moves at once, and on a service that wants a key as well. A test asks the
-service again, and fails where the file says anything else.
+The page shows it without a job, so that it moves at once, even if the service requires a key. A test queries the
+service again and fails if its answer differs from the file.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from synthesis.registry import KINDS, get_first_example
 
 KIND = next(iter(KINDS))
 STEPS = 180
-"""Samples of the motion."""
+"""Number of steps of the motion."""
 
 DIGITS = 6
-"""Significant digits of its numbers: more than a screen shows."""
+"""Significant digits of the stored numbers, more than a screen can show."""
 
 WAIT_S = 60
 
 MOTION = ("input_angle", "joints", "links", "transmission_angle", "toggles", "circuits", "valid")
-"""What a picture of a motion needs of an analysis."""
+"""Fields of an analysis that the picture of a motion needs."""
 
 NOT_PLOTTED = ("jx", "jy", "jerk")
 
 
 def opening(client: httpx.Client) -> dict[str, Any]:
-    """Solve the first example, and answer it with the motion of its best design.
+    """Solve the first example; return its problem, its best design and the motion of that design.
 
     Raises
     ------
     httpx.HTTPStatusError
-        Where the service refuses.
+        If the service refuses a request.
     """
     problem = get_first_example(KIND)
     job = _json(
@@ -64,7 +64,7 @@ def opening(client: httpx.Client) -> dict[str, Any]:
 
 
 def rounded(value: Any) -> Any:
-    """The same with all floats to :data:`DIGITS` significant digits."""
+    """Return a value with all floats in it rounded to :data:`DIGITS` significant digits."""
     if isinstance(value, float):
         short = float(f"{value:.{DIGITS}g}")
         return int(short) if short.is_integer() and abs(short) < 1e15 else short

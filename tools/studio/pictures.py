@@ -1,6 +1,6 @@
-"""Take the pictures of the studio that the pages show: ``python -m tools.studio.pictures URL`` of a service that runs.
+"""Take the pictures of the studio for the documentation: ``python -m tools.studio.pictures URL``.
 
-They are taken in the system's Chromium, and have as few colours as they need.
+URL is the address of a running service. The pictures are taken in the system's Chromium and reduced to a small palette.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ DOCS = Path(__file__).parents[2] / "docs" / "images"
 KIND_FOLDER = DOCS / "studio_kinds"
 
 SIZE = (1280, 800)
-"""Of the window, pixels."""
+"""Width and height of the window, pixels."""
 
 KIND_SIZE = (1024, 640)
-"""The same for a picture of a kind: the drawer is shut."""
+"""Width and height of the window for the picture of a kind, pixels. The drawer is closed at this size."""
 
 COMMON, FURTHER = 96, 96
-"""Colours of a picture: the commonest, as they are, so that grounds and text keep theirs, and others between them; a
-file then has some fifty kilobytes."""
+"""Number of colours in a picture. The most frequent ones are kept exactly, so that backgrounds and text do not change.
+The further ones represent all others. A file then has about fifty kilobytes."""
 
 WAIT_MS = 200_000
 
 SOON = {"motion": 0, "path": 1, "function": 2, "dwell": 1}
-"""The example of each kind that is soon solved, where that is not the first."""
+"""Index of an example that is solved quickly, by kind, if it is not the first."""
 
 
 LID: Mapping[str, object] = {
@@ -47,7 +47,7 @@ LID: Mapping[str, object] = {
     ],
     "length_unit": "mm",
 }
-"""A lid of a cabinet."""
+"""Problem of the lid of a cabinet."""
 
 LID_OUTLINE = [[0.0, -100.0], [60.0, -100.0], [60.0, 80.0], [-30.0, 80.0]]
 
@@ -63,7 +63,7 @@ ROOM: Mapping[str, object] = {
         "clearance": 5.0,
     },
 }
-"""A zone for a pivot, a shelf, a post, and how the lid looks."""
+"""Problem of the lid with a workspace: a zone for a pivot, a shelf and a post as obstacles, the outline of the lid."""
 
 SWEPT: Mapping[str, object] = {
     **LID,
@@ -76,7 +76,7 @@ SWEPT: Mapping[str, object] = {
         "link_width": 16.0,
     },
 }
-"""Both fixed pivots are chosen: one linkage, found at once."""
+"""Problem of the lid with both fixed pivots given. It has a single linkage, which is found at once."""
 
 LOADED: Mapping[str, object] = {
     "kind": "quick_return",
@@ -92,22 +92,22 @@ LOADED: Mapping[str, object] = {
         "loads": [{"joint": "D", "force": {"constant": [200.0, 0.0]}}],
     },
 }
-"""A shaper; its ram works while it goes slowly, to the left."""
+"""Problem of a shaper. Its ram is loaded in the slow stroke, to the left."""
 
 OUTLINE = list_examples("path")[3]["points"]
-"""The closed curve of an example: a picture shows it, and its first points are traced."""
+"""Points of the closed curve of an example. A picture shows the curve, and its first points are traced."""
 
 TRACED = 11
 
 SKETCH = 600
-"""Width and height of the picture that is laid behind the canvas, pixels."""
+"""Width and height of the picture behind the canvas, pixels."""
 
 SKETCH_MM = 78.67
-"""The width that the page gives to it: four thirds of the height of the points."""
+"""Width at which the page shows that picture, millimetres: four thirds of the height of the points."""
 
 
 def _stated(page: Page, problem: Mapping[str, object]) -> None:
-    """State a problem of one's own; the task then shows its beginning."""
+    """Enter a problem as JSON, and scroll the task to its top."""
     page.locator("#json").evaluate("details => { details.open = true; }")
     page.fill("#json-text", json.dumps(problem))
     page.locator("#json").evaluate("details => { details.open = false; }")
@@ -115,7 +115,7 @@ def _stated(page: Page, problem: Mapping[str, object]) -> None:
 
 
 def _answered(page: Page) -> None:
-    """Solve what is stated, and let it stand still a third of its way on."""
+    """Solve the entered problem, and stop the motion at 0.3 of its range."""
     page.click("#solve")
     page.wait_for_selector("#answers:not([aria-busy]) .card", timeout=WAIT_MS)
     page.wait_for_selector(".moving .stage .canvas", timeout=WAIT_MS)
@@ -124,7 +124,7 @@ def _answered(page: Page) -> None:
 
 
 def _led(page: Page, share: float) -> None:
-    """Put the motion to a share of it."""
+    """Set the motion to a share of its range, from 0 to 1."""
     page.locator("#scrub").evaluate(
         "(one, share) => { one.value = String(share * one.max); one.dispatchEvent(new Event('input')); one.blur(); }",
         share,
@@ -133,7 +133,7 @@ def _led(page: Page, share: float) -> None:
 
 
 def _solved(page: Page, kind: str, example: int) -> None:
-    """State an example, solve it, and let it stand still a third of its way on."""
+    """Select an example, solve it, and stop the motion at 0.3 of its range."""
     page.select_option("#kind", kind)
     page.select_option("#example", str(example))
     _answered(page)
@@ -149,7 +149,7 @@ def _gallery(page: Page) -> None:
 
 
 def _choosing(page: Page) -> None:
-    """Two designs of the first example beside each other."""
+    """Show two designs of the first example side by side."""
     _solved(page, "motion", 0)
     page.click("#tab-compare")
     page.select_option("#compare-with", "1")
@@ -172,7 +172,7 @@ def _room(page: Page) -> None:
 
 
 def _import(page: Page) -> None:
-    """The picture of a curve lies behind the points that trace it, and two places of it have been clicked."""
+    """Show the picture of a curve behind the points that trace it, with two places of it clicked to set its scale."""
     _stated(page, {"kind": "path", "points": OUTLINE[:TRACED], "length_unit": "mm"})
     with page.expect_file_chooser() as choosing:
         page.click("#curve-import")
@@ -190,13 +190,16 @@ def _import(page: Page) -> None:
 
 
 def _in_sketch(x: float, y: float) -> tuple[float, float]:
-    """Pixels of a place of the plane: the page puts a picture about the middle of what is stated."""
+    """Return the pixel coordinates in the picture of a point of the plane (millimetres).
+
+    The page centres a picture on the middle of the given points, which is (32.3, 41.5) here.
+    """
     finer = SKETCH / SKETCH_MM
     return SKETCH / 2 + (x - 32.3) * finer, SKETCH / 2 - (y - 41.5) * finer
 
 
 def _sketch() -> bytes:
-    """What lies within the outline, filled, as PNG."""
+    """Return a picture of the area inside the outline, filled, as PNG."""
     turns = [*OUTLINE, OUTLINE[0]]
     curve = CubicSpline(range(len(turns)), [(one["x"], one["y"]) for one in turns], bc_type="periodic")
     places = [_in_sketch(x, y) for x, y in curve([k / 20 for k in range(20 * len(OUTLINE))])]
@@ -234,7 +237,7 @@ def _forces(page: Page) -> None:
 
 
 def _assembly(page: Page) -> None:
-    """The first example, its planes apart."""
+    """Show the assembly of the first example in exploded view."""
     _solved(page, "motion", 0)
     page.click("#tab-assembly")
     page.wait_for_selector("#assembly .parts li", timeout=WAIT_MS)
@@ -259,13 +262,13 @@ PICTURES: Mapping[str, Callable[[Page], None]] = {
 
 
 def write(picture: bytes, path: Path) -> None:
-    """Write a picture with few colours."""
+    """Write a picture with a reduced palette."""
     image = Image.open(io.BytesIO(picture)).convert("RGB")
     colours, places, counts = np.unique(
         np.asarray(image).reshape(-1, 3), axis=0, return_inverse=True, return_counts=True
     )
     common = colours[np.argsort(-counts, kind="stable")[:COMMON]]
-    # Of what is drawn in a few pixels the colour is kept, too.
+    # Maximum coverage also keeps the colours of details that have only a few pixels.
     further = image.quantize(FURTHER, method=Image.Quantize.MAXCOVERAGE).getpalette() or []
     palette = np.vstack([common, np.reshape(further, (-1, 3))]).astype(np.int64)
     nearest = np.square(colours[:, None].astype(np.int64) - palette).sum(axis=2).argmin(axis=1)
@@ -275,7 +278,7 @@ def write(picture: bytes, path: Path) -> None:
 
 
 def taken(page: Page, url: str, name: str) -> bytes:
-    """The picture of this name, or of this kind, as PNG; the page is one that was asked for reduced motion."""
+    """Take the picture of a name, or of a kind of problem, as PNG; ``page`` must prefer reduced motion."""
     width, height = SIZE if name in PICTURES else KIND_SIZE
     page.set_viewport_size({"width": width, "height": height})
     page.goto("about:blank")
@@ -289,24 +292,24 @@ def taken(page: Page, url: str, name: str) -> bytes:
 
 
 def path_of(name: str) -> Path:
-    """Where the picture of this name is kept."""
+    """Return the path of the file of a picture."""
     return (DOCS if name in PICTURES else KIND_FOLDER) / f"{name}.png"
 
 
 def main() -> None:
-    """Open the page for each picture, and write it."""
+    """Take and write all pictures, or those selected on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("url", help="where a service without keys runs, as http://127.0.0.1:8000")
     parser.add_argument("--only", nargs="*", help="names of pictures or of kinds; all where none is said")
     asked = parser.parse_args()
     KIND_FOLDER.mkdir(exist_ok=True)
     with sync_playwright() as playwright:
-        # Without its sandbox, which needs a user other than root; it sees our own page only.
+        # The sandbox does not work as root. It is not needed, because the browser opens only our own page.
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         for name in [*PICTURES, *KINDS]:
             if asked.only and name not in asked.only:
                 continue
-            # In a window of its own, which knows no statement of another picture.
+            # A new browser context has no stored problem of an earlier picture.
             page = browser.new_page(reduced_motion="reduce")
             write(taken(page, asked.url, name), path_of(name))
             page.close()

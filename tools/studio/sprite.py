@@ -1,8 +1,8 @@
-"""The pictures of the studio's gallery: what the service answers to each example, drawn as the page draws its cards.
+"""Pictures of the studio's gallery: the answer of the service to each example, drawn like the cards of the page.
 
-The page's own module draws them, in the page itself, so that a card and the picture of its example are alike; linkages
-have the path of their telling point beside. All pictures are symbols of one file. Each has a sum of its statement, by
-which the next run knows whether it is still the picture of its example; only the others are solved anew.
+They are drawn in the page by its own module, so that a card and the picture of its example look alike. Pictures of
+linkages also show the path of the traced joint. All pictures are symbols of one file. Each symbol contains a checksum
+of its problem. The next run solves only examples whose checksum has changed.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from playwright.sync_api import Page, sync_playwright
 from synthesis.registry import KINDS, list_examples
 
 STEPS = 120
-"""Samples of the path of a linkage."""
+"""Number of steps of the motion, and thus of points on the path of a linkage."""
 
 POLL_S = 1.0
 
 WIDTH, HEIGHT = 150, 84
-"""Of a picture, as the page's cards have it."""
+"""Width and height of a picture in pixels, the same as those of the page's cards."""
 
 CHROMIUM = "/usr/bin/chromium"
 
@@ -41,20 +41,20 @@ DRAW = """async ([design, motion]) => {
 
 
 class TooSlow(Exception):
-    """An example that is not solved in the time that it has."""
+    """An example is not solved within its time limit."""
 
 
 def renewed(
     file: Path, client: httpx.Client, url: str, patience_s: float, told: Callable[[str], None] = print
 ) -> list[str]:
-    """Bring the pictures in ``file`` up to date; returns the examples that were too slow for ``patience_s``.
+    """Update the pictures in ``file``; return the names of the examples that took longer than ``patience_s`` seconds.
 
     Raises
     ------
     httpx.HTTPStatusError
-        Where the service refuses.
+        If the service refuses a request.
     RuntimeError
-        Where an example has no design.
+        If an example has no design.
     """
     wanted = {f"{kind}-{n}": problem for kind in KINDS for n, problem in enumerate(list_examples(kind))}
     symbols = {name: symbol for name, symbol in kept(file).items() if sum_in(symbol) == sum_of(wanted.get(name))}
@@ -79,18 +79,18 @@ def renewed(
 
 
 def kept(file: Path) -> dict[str, str]:
-    """The symbols of a file by name."""
+    """Return the symbols in a file by name; an empty mapping if there is no file."""
     text = file.read_text("utf-8") if file.exists() else ""
     return {found.group(1): found.group() for found in re.finditer(r'<symbol id="([^"]+)".*?</symbol>\n', text)}
 
 
 def sum_of(problem: dict[str, Any] | None) -> str:
-    """A statement in twelve digits."""
+    """Return the checksum of a problem: twelve hexadecimal digits of its SHA-256."""
     return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def sum_in(symbol: str) -> str:
-    """The sum of the statement that a symbol shows."""
+    """Return the checksum in a symbol, or an empty string if it has none."""
     found = re.search(r'data-of="(\w+)"', symbol)
     return found.group(1) if found else ""
 
@@ -101,7 +101,7 @@ def _symbol(name: str, of: str, drawing: str) -> str:
 
 
 def shortened(drawing: str) -> str:
-    """The same with a decimal for each number: a screen shows no more."""
+    """Return a drawing with all numbers rounded to one decimal, which is enough for a screen."""
     return re.sub(r"-?\d+\.\d{2,}", lambda found: f"{float(found.group()):.1f}", drawing)
 
 
@@ -113,7 +113,7 @@ def _drawn(client: httpx.Client, page: Page, problem: dict[str, Any], patience_s
         if time.monotonic() > deadline:
             client.delete(at).raise_for_status()
             raise TooSlow
-        time.sleep(POLL_S)  # the job is another process's; this is a tool that waits for it
+        time.sleep(POLL_S)  # the service solves the job, and this program has nothing else to do
         job = _json(client.get(at))
     if not job["result"] or not job["result"]["designs"]:
         raise RuntimeError(f"an example is {job['status']} without a design: {job['error']}: {problem}")

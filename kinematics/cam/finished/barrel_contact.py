@@ -4,9 +4,10 @@ The cylinder on which the roller's middle runs is unrolled, x along its circumfe
 wall is a curve that repeats after 2πR. A quintic runs through each six neighbouring points. With the roller's centre at
 x, a point (P_x, P_y) of the lower wall requires
 
-    y = P_y + √(r² − (P_x − x)²)
+    y ≥ P_y + √(r² − (P_x − x)²)
 
-at least, a point of the upper wall P_y − √(…) at most; the roller stands at the maximum, or the minimum, of these.
+and a point of the upper wall y ≤ P_y − √(…). The roller stands at the maximum of the lower bounds, or at the minimum of
+the upper ones.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class UnrolledWall:
     Parameters
     ----------
     points : complex, shape (n,)
-        In the order of the turn; the first is not repeated at the end.
+        Points in the order of the turn; the first is not repeated at the end.
     period : float
         Circumference of the cylinder.
     at, breaks : float, shape (n,), and int, shape (b,), optional
@@ -71,7 +72,7 @@ class UnrolledWall:
     Raises
     ------
     ShapeError, DimensionError
-        For fewer than 16 points, a period that is not positive, or points that are not finite or equal to neighbours.
+        For fewer than 16 points, a period that is not positive, or points that are not finite or repeat a neighbour.
     """
 
     points: Complex
@@ -167,7 +168,7 @@ class UnrolledWall:
         x : array_like
             Positions of the roller's centre along the circumference.
         roller_radius : float
-            Large enough that points of the wall lie on both sides of its contact.
+            Radius of the roller, large enough that points of the wall lie on both sides of its contact.
         """
         if not roller_radius >= MIN_ROLLER_CHORDS * np.abs(self.chords).max():
             raise DimensionError(

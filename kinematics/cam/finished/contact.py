@@ -54,7 +54,7 @@ MIN_ROLLER_CHORDS = 4.0
 """Minimum radius of a roller in chords, so that points of the profile lie on both sides of its contact."""
 
 MAX_CHORD_TURN = math.pi / 3.0
-"""Angle between neighbouring chords, radians, above which a profile has a cusp: there the next chord runs back."""
+"""Angle between neighbouring chords, radians, above which a profile has a cusp: the next chord runs back there."""
 
 TRANSLATING_ROLLER, OSCILLATING_ROLLER, TRANSLATING_FACE, OSCILLATING_FACE = range(4)
 TRANSLATING_INNER_ROLLER, OSCILLATING_INNER_ROLLER = 4, 5
@@ -69,9 +69,9 @@ GOLDEN_SECTION_STEPS = 42
 class ContactMotion(NamedTuple):
     """Position of the follower at each cam angle; NaN where it touches nothing.
 
-    ``s``, ``v``, ``a`` its displacement and derivatives by the cam angle, ``point`` the contact and ``normal`` the
-    outward unit normal there, in the cam's frame, ``pressure_angle`` without its sign and ``radius`` of curvature of
-    the profile there, positive where convex.
+    ``s``, ``v`` and ``a`` are its displacement and the derivatives by the cam angle. ``point`` is the contact and
+    ``normal`` the outward unit normal there, in the cam's frame. ``pressure_angle`` is unsigned. ``radius`` is the
+    radius of curvature of the profile at the contact, positive where convex.
     """
 
     s: Real
@@ -103,20 +103,20 @@ class Contour:
     Parameters
     ----------
     points : complex, shape (n,)
-        In order around the cam, either way, the first not repeated at the end.
+        Points in order around the cam, in either direction; the first is not repeated at the end.
     at : float, shape (n,), optional
         A parameter in which the curve is smooth between breaks, ascending within a turn: the cam angles at which the
         follower stands at the points; by default the length of the chords.
     breaks : int, shape (b,), optional
-        Points at which a derivative of the curve may jump, ascending. They only limit the local curves: even with
-        wrong breaks the curve passes through all points.
+        Indices of points at which a derivative of the curve may jump, ascending. Breaks only limit the local curves:
+        even with wrong breaks the curve passes through all points.
 
     Raises
     ------
     ShapeError
-        Fewer than 16 points, or another number of angles.
+        For fewer than 16 points, or a different number of angles.
     DimensionError
-        A point that is not finite, or two neighbours at one place; angles that do not ascend within a turn.
+        For a point that is not finite or repeats its neighbour, or angles that do not ascend within a turn.
     """
 
     points: Complex
@@ -213,7 +213,7 @@ class Contour:
 
     @cached_property
     def sharpest_turn(self) -> float:
-        """Greatest angle between neighbouring chords, radians."""
+        """Maximum angle between neighbouring chords, radians."""
         chord = np.roll(self.points, -1) - self.points
         return float(np.abs(np.angle(chord * np.conj(np.roll(chord, 1)))).max())
 
@@ -236,9 +236,9 @@ class Contour:
         Parameters
         ----------
         follower : Follower
-            Its dimensions; its displacement counts from the prime or base radius.
+            The follower with its dimensions; its displacement is measured from the prime or base radius.
         angle : array_like
-            Cam angles of any shape, as :class:`~kinematics.cam.profile.Cam` counts them.
+            Cam angles of any shape, measured as in :class:`~kinematics.cam.profile.Cam`.
         rotation : {"ccw", "cw"}
             Sense in which the cam turns.
 
@@ -261,7 +261,7 @@ class Contour:
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
         flat = np.ascontiguousarray(theta.reshape(-1))
-        # A knife edge touches where its path crosses the profile: no tangency, hence another search.
+        # A knife edge touches where its path crosses the profile. There is no tangency, so it needs another search.
         edge = roller and sizes[2] == 0.0
         _lay_follower(np.ascontiguousarray(curves), flat, kind, sizes, flipped, edge, values, pieces, shares)
         values = values.reshape(theta.shape)
@@ -286,7 +286,7 @@ class Contour:
     def follow_inside(self, follower: Follower, angle: ArrayLike, rotation: Rotation = "ccw") -> Real:
         """Lay a roller from inside against this curve, the outer wall of a groove.
 
-        The wall's points are taken on the follower's side of the cam. Parameters as for :meth:`follow`.
+        The wall's points are taken on the follower's side of the cam. The parameters are those of :meth:`follow`.
 
         Returns
         -------

@@ -12,8 +12,8 @@ With D = |C − q|, β the angle of q at the pivot, and σ the sense in which th
     roller in a groove    sin λ = ±(q_x − R θ)/r, λ from the axis
 
 (the relations of :mod:`contact`, solved for the normal instead of the displacement). In the cam's frame, turned
-clockwise, the normal stands at θ + λ. This does not prove that the profile is touched there: :mod:`bends` compares the
-normals with the chords.
+clockwise, the normal stands at θ + λ. This does not prove that the profile is touched there: :mod:`curvature` compares
+the normals with the chords.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from kinematics.cam.follower import Follower, OscillatingFlat, TranslatingFlat, 
 from kinematics.errors import DimensionError
 
 Side = Literal[1, -1]
-"""1: the roller lies on a wall; −1: under it."""
+"""Side of a wall on which the roller lies: 1 on it, −1 under it."""
 
 
 class Normals(NamedTuple):
@@ -39,7 +39,7 @@ class Normals(NamedTuple):
     lean : float, shape (n,)
         λ, radians; NaN where the follower cannot touch the point at its angle.
     arm : float, shape (n,)
-        Displacement of a point per rotation of its normal, length by radian: an error ε of a point turns its normal
+        Displacement of a point per rotation of its normal, length per radian: an error ε of a point turns its normal
         by at most ε/arm.
     """
 
@@ -88,13 +88,14 @@ def compute_wall_normals(radius: float, roller_radius: float, side: Side, points
     radius : float
         Radius of the cylinder.
     side : {1, -1}
-        1: the roller lies on the wall; −1: under it.
+        1 if the roller lies on the wall, −1 if it lies under it.
     """
     rolling = _check_roller_radius(roller_radius)
     return _build_from_sine(side * (points.real - radius * at) / rolling, rolling)
 
 
 def _build_from_sine(sine: Real, radius: float) -> Normals:
+    """Build the normals of a roller of given radius from sin λ."""
     with np.errstate(invalid="ignore"):
         # NaN where the point is beyond the roller's reach; callers check.
         lean = np.arcsin(sine)

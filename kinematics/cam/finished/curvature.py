@@ -59,15 +59,15 @@ class ProfileCurvature:
     Attributes
     ----------
     chords : complex, shape (n,)
-        From each point to the next, in the frame of a cam that turns clockwise.
+        Vectors from each point to the next, in the frame of a cam that turns clockwise.
     sizes : float, shape (n,)
-        Lengths of which the points are rounded to the share ROUNDED.
+        Lengths relative to which the points are rounded: their error is the share :data:`ROUNDING_ERROR` of these.
     arm : float, shape (n,)
         Arms of the normals, see :class:`~kinematics.cam.finished.contact_normals.Normals`.
     velocity : complex, shape (n, 5)
         P′ on each chord: coefficients in the share τ of the chord, constant first, derivative by τ.
     turn : float, shape (n, 6)
-        φ, likewise.
+        φ on each chord, as coefficients of the same kind.
     """
 
     chords: Complex
@@ -91,7 +91,7 @@ class ProfileCurvature:
         """Return the size of each chord in units of the rounding of its points, shape (n,).
 
         The size is the chord's length or, if smaller, that length times arm × ``greatest`` curvature, which is how
-        far the normals turn along it. The unit is the share ROUNDED of ``sizes``.
+        far the normals turn along it. The unit is the share :data:`ROUNDING_ERROR` of ``sizes``.
         """
         # The smaller arm of the chord's two ends is the more sensitive one.
         arm = np.minimum(self.arm, np.roll(self.arm, -1))
@@ -100,9 +100,9 @@ class ProfileCurvature:
     def estimate_rounding(self, chord: ArrayLike, share: ArrayLike) -> Real:
         """Return the error bound of the curvature by rounding; arguments as for :meth:`curvature_at`.
 
-        In κ = φ′/|P′| (derivatives by the share of the chord) the denominator has an error of ROUNDED p, the numerator
-        that error over the arm plus the rounding of the cam angle. At the end of six points the first derivative of a
-        quintic amplifies their error at most 17 times, and its scatter 7 times.
+        In κ = φ′/|P′| (derivatives by the share of the chord) the denominator has the rounding error of the points, and
+        the numerator that error over the arm plus the rounding of the cam angle. At the end of six points the first
+        derivative of a quintic amplifies their error at most 17 times, and its scatter 7 times.
         """
         chosen, tau = np.asarray(chord, dtype=np.int64), np.asarray(share, dtype=np.float64)
         speed = np.abs(evaluate_curve(self.velocity[chosen], tau))
@@ -156,7 +156,7 @@ def measure_wall_curvature(wall: UnrolledWall, roller_radius: float, side: Side)
     Raises
     ------
     DimensionError
-        As for a profile.
+        As for :func:`measure_profile_curvature`.
     """
     at, count = wall.cam_angles, len(wall.points)
     normals = compute_wall_normals(wall.period / TURN, roller_radius, side, wall.points, at)

@@ -19,15 +19,16 @@ SETTLED_TOLERANCE = 1e-6
 """Relative difference of the curvatures of the two curves up to which the finer one counts as exact."""
 
 FAINT_CURVATURE = 0.02
-"""Curvature, as a share of the maximum, below which the tolerance no longer shrinks with the value: the profile is so
-slightly hollow or convex there that it does not matter."""
+"""Curvature, as a share of the maximum, below which the tolerance no longer shrinks with the value: a profile that is
+so slightly curved needs no higher accuracy."""
 
 ERROR_SHARE = 0.2
-"""Share of that difference taken as the error of the finer curve: with an error of fourth order a fifteenth is usual,
-more at the ends of stretches."""
+"""Share of the difference between both curves taken as the error of the finer one: with an error of fourth order a
+fifteenth is usual, more at the ends of stretches."""
 
 STEADY_TOLERANCE = SETTLED_TOLERANCE / ERROR_SHARE
-"""Relative difference of a pressure angle, or of a face's width, at which the amount added equals SETTLED."""
+"""Relative difference of a pressure angle, or of a face's width, at which the amount added equals
+:data:`SETTLED_TOLERANCE`."""
 
 CHORD_SHARES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Shares of a chord at which the two curves are compared."""
@@ -66,7 +67,7 @@ class Stretches(NamedTuple):
     blurred : bool, shape (n,)
         Chords whose curves cross breaks.
     narrow : bool, shape (n,)
-        Those of them between breaks too close to measure a curvature there.
+        Those blurred chords whose breaks are too close to measure a curvature between them.
     single : bool, shape (n,)
         Chords between breaks with too few points for a second curve through every second one.
     """
@@ -126,7 +127,7 @@ def estimate_uncertainty(
     unsettled[measured] = np.where(
         hidden.any(axis=1) & stretches.blurred[measured], FINEST_DIVISION, np.minimum(factor, MAX_UNSETTLEDNESS)
     )
-    # The number of parts of a chord is the fourth root of its factor, hence the limit room⁴.
+    # A chord is divided into the fourth root of its factor parts, so a chord of size ``room`` limits it to room⁴.
     return (
         above,
         below,
@@ -144,7 +145,7 @@ def measure_unsteadiness(near: Real, wide: Real, sign: Real, lengths: Real, stre
     near, wide : float, shape (n, m)
         The value at m places of n chords, of the curve through all points and of that through every second one.
     sign : float, shape (n, m)
-        −1, 0 or 1: values of either sign have their own maximum; those with 0 belong to both.
+        Signs −1, 0 or 1: the values of each sign have their own maximum, and those with 0 belong to both.
     lengths : float, shape (n,)
         Lengths of the chords, as shares of the cam's size.
     stretches : Stretches

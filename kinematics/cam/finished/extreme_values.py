@@ -4,8 +4,8 @@ At a point P of the profile with the outward normal n the follower's position fo
 centre is C = P + r n, and its distance from the cam's centre determines its position on its path; the position of a
 face follows from the distance of the tangent from the cam's centre. So each value is a function of the position on the
 profile, smooth on every chord, and its extremes over all chords are exact (:mod:`extremes`), both sides of every point
-included. Curvature is that of :mod:`bends`. A second curve runs through every second point; the difference of its
-values estimates the error of the first one's (:mod:`settled`).
+included. The curvature is measured by :mod:`curvature`. A second curve runs through every second point; the difference
+of the values on both curves estimates the error of those on the first one (:mod:`discretization`).
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class WorstValues:
         Discretization error of the curvature of each chord as a multiple of the tolerance, where the curvature may be
         the maximum; 0 elsewhere.
     unsteady : float, shape (n,)
-        The same for the pressure angle, or under a face for the extent of the contact.
+        The same for the pressure angle of a roller, or the extent of the contact on a face.
     """
 
     convex: float
@@ -92,7 +92,7 @@ def find_worst_values(contour: Contour, follower: Follower, rotation: Rotation, 
     Parameters
     ----------
     contour : Contour
-        With ``at``.
+        The profile, with the cam angles of its points.
     follower : Follower
         The follower, which touches the profile everywhere.
     rotation : {"ccw", "cw"}
@@ -101,7 +101,7 @@ def find_worst_values(contour: Contour, follower: Follower, rotation: Rotation, 
         The breaks that limit the local curves.
     """
     fine, coarse = (_FollowerStates(curve, follower, rotation) for curve in (contour, contour.coarser))
-    # Both curves are compared at the same cam angles, hence the shares of the coarser chords.
+    # Both curves are compared at the same cam angles, so the shares on the coarser chords have to be found.
     places = np.arange(len(contour.points))[:, None], CHORD_SHARES
     coarser = locate_on_coarser(contour.cam_angles, contour.coarser.cam_angles, CHORD_SHARES)
     bends = [measure_profile_curvature(curve, follower, rotation) for curve in (contour, contour.coarser)]
@@ -137,8 +137,11 @@ Places = tuple[NDArray[np.int64], Real]
 def _bound_curvature(
     fine: ProfileCurvature, coarse: ProfileCurvature, places: Places, coarser: Places, stretches: Stretches
 ) -> tuple[tuple[float, float], float, Real]:
-    """Bound the curvature: its minimum and maximum, both widened by their errors, the share of the larger one that is
-    rounding, and the unsettledness of each chord."""
+    """Bound the curvature.
+
+    Return its minimum and maximum, both widened by their errors, the share of the larger one that is due to rounding,
+    and the unsettledness of each chord.
+    """
     near, wide = fine.curvature_at(*places), coarse.curvature_at(*coarser)
     # Chords between very close breaks carry no measurable curvature and are left out.
     measured = ~stretches.narrow
@@ -187,8 +190,8 @@ class WorstWallValues:
         Maximum pressure angles, radians.
     lowest, highest : float
         Range of the wall along the axis.
-    rounded : float
-    unsettled, unsteady : float, shape (n,)
+    rounded, unsettled, unsteady
+        As in :class:`WorstValues`.
     """
 
     up: float
@@ -210,11 +213,11 @@ def find_worst_wall_values(
     Parameters
     ----------
     wall : UnrolledWall
-        With ``at``.
+        The wall, with the cam angles of its points.
     roller_radius : float
         Radius of the roller, which touches the wall everywhere.
     side : {1, -1}
-        1: the roller lies on the wall; −1: under it.
+        1 if the roller lies on the wall, −1 if it lies under it.
     stretches : Stretches
         As for :func:`find_worst_values`.
     """

@@ -74,16 +74,16 @@ def fit_local_curves(points: Complex, at: Real, own: Integers) -> Complex:
     Parameters
     ----------
     points : complex, shape (n, 6)
-        In order along the curve.
+        Points in order along the curve.
     at : float, shape (n, 6)
-        Parameter of each of them, ascending.
+        Parameter of each point, ascending.
     own : int, shape (n,)
         Index (0 to 4) of the chord's first point among them.
 
     Returns
     -------
     complex, shape (n, 6)
-        Constant first.
+        Coefficients, constant first.
     """
     rows = np.arange(len(points))
     start, from_start = points[rows, own], at - at[rows, own][:, None]
@@ -152,7 +152,7 @@ def evaluate_derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex
 
 
 def differentiate_curve(curves: Values) -> Values:
-    """Return the coefficients of the derivatives by τ, one fewer."""
+    """Return the coefficients of the derivatives by τ, one fewer than those of the curves."""
     return curves[..., 1:] * np.arange(1.0, curves.shape[-1])
 
 

@@ -33,8 +33,8 @@ MAX_HALVINGS = 24
 """Maximum number of halvings; a kink or jump inside a piece, which no polynomial fits, is located to 1e-7 of it."""
 
 MAX_OPEN_PARTS = 4096
-"""Number of unresolved parts, beyond two per break, at which the rest is accepted unresolved: kinks leave a few in each
-round; only a function that consists of rounding noise leaves this number, and halving does not help there."""
+"""Number of unresolved parts, beyond two per break, at which the rest is accepted unresolved. Kinks leave a few parts
+in each round. Only a function that consists of rounding noise leaves this number, and halving does not help there."""
 
 NEGLIGIBLE_COEFFICIENT = 1e-15
 """Share of a polynomial's largest coefficient below which a leading one is rounding and is dropped."""
@@ -59,7 +59,7 @@ _END_VALUES = np.stack([(-1.0) ** np.arange(DEGREE + 1), np.ones(DEGREE + 1)])
 
 @dataclass(frozen=True)
 class Extremes:
-    """Minimum and maximum over all pieces, and where they occur; of equal values the first."""
+    """Minimum and maximum over all pieces, and where they occur; the first place if several have the same value."""
 
     least: float
     greatest: float
@@ -68,7 +68,7 @@ class Extremes:
 
     @property
     def largest(self) -> float:
-        """The greatest absolute value."""
+        """Maximum absolute value."""
         return max(abs(self.least), abs(self.greatest))
 
 
@@ -98,7 +98,7 @@ def find_stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real,
     Returns
     -------
     points, values : float, shape (m,)
-        At the breaks the limits from within each piece.
+        Places and values there; at breaks the values are the limits from within each piece.
     """
     low, high, series, owner = _fit_series(function, np.asarray(breaks, dtype=np.float64))
     return _find_stationary(low, high, series, owner, np.ones(len(low), np.bool_))
@@ -122,7 +122,7 @@ def _find_stationary(
 
 
 def find_roots(function: Function, breaks: Real) -> Real:
-    """Find every root of a function that is smooth between breaks, ascending; a jump through zero at a break is none.
+    """Find every root of a function that is smooth between breaks, ascending; a jump across zero is not a root.
 
     A piece on which the function vanishes identically has no roots. A double root may appear twice.
     """

@@ -15,7 +15,7 @@ family, widened by a stretch of constant velocity):
     modified constant velocity 1/16   0      3/16
     =========================  =====  =====  =====
 
-With A the greatest acceleration, V = A (2 (p1 + p3)/π + p2) is the velocity in the middle, and A follows from
+With A the maximum acceleration, V = A (2 (p1 + p3)/π + p2) is the velocity in the middle, and A follows from
 s(1/2) = 1/2. Half laws join a dwell to a constant velocity (Kloomok & Muffley; Rao, *Kinematics of Machinery*, §5.2).
 """
 
@@ -83,7 +83,7 @@ class Law:
 
 
 MIN_JUMP = 1e-9
-"""Share of the maximum acceleration above which a step of it inside a law is a jump and not rounding."""
+"""Share of the maximum acceleration above which a step of the acceleration inside a law is a jump and not rounding."""
 
 
 def _find_extremes(function: Pieces, breaks: np.ndarray) -> Extremes:

@@ -67,7 +67,7 @@ class Pieces:
         return float(self.start[-1] - self.start[0])
 
     def motion(self, at: ArrayLike, *, before: bool = False) -> Motion:
-        """Return values and the first three derivatives.
+        """Return the values and the first three derivatives.
 
         Parameters
         ----------

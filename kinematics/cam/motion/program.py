@@ -61,7 +61,7 @@ class Joint:
 
     @property
     def jump(self) -> tuple[float, ...]:
-        """Steps of s, v, a, j."""
+        """Jumps of s, v, a, j."""
         return tuple(after - before for before, after in zip(self.before, self.after, strict=True))
 
 
@@ -72,7 +72,7 @@ class Program:
     Parameters
     ----------
     segments : sequence of Segment
-        Any number, in order from cam angle 0; their angles make one turn.
+        Any number of segments, in order from cam angle 0; their angles sum to one turn.
 
     Raises
     ------
@@ -121,7 +121,7 @@ class Program:
 
     @cached_property
     def _jumps(self) -> Real:
-        """Largest relative jump of any derivative at each break but the last, see :data:`MIN_DERIVATIVE_JUMP`."""
+        """Largest relative jump of any derivative at each break except the last, see :data:`MIN_DERIVATIVE_JUMP`."""
         # The second derivative's own a and j are the fourth and fifth derivatives of s.
         fourth = self.pieces.derivative().derivative()
         before, after = (
@@ -187,7 +187,7 @@ class Program:
 
     @property
     def smoothness(self) -> int:
-        """Number of s, v, a, j, in this order, that are continuous at every joint."""
+        """How many of s, v, a, j, counted in this order, are continuous at every joint."""
         for order in range(MOTION_VALUE_COUNT):
             if not all(joint.continuous[order] for joint in self.continuity):
                 return order

@@ -25,7 +25,7 @@ MIN_INDEPENDENCE = 1e-12
 
 
 class Condition(NamedTuple):
-    """A value of the derivative of an order at an angle from the segment's start; order 0 is the displacement."""
+    """Value of a derivative of given order at an angle from the segment's start; order 0 is the displacement."""
 
     angle: float
     order: int
@@ -50,7 +50,7 @@ class Segment:
 
 
 def build_law_segment(law: Law, angle: float, start: float, end: float) -> Segment:
-    """Build a rise or fall by a law; a fall is the law upside down.
+    """Build a rise or fall by a law; a fall is the law turned upside down.
 
     Peak velocity and acceleration of a cycloidal rise of 1 in 1 rad are 2 and 2π (Norton, Table 8-3):
 
@@ -75,7 +75,7 @@ def build_dwell(angle: float, position: float) -> Segment:
 def build_polynomial_segment(angle: float, conditions: Sequence[Condition]) -> Segment:
     """Build the polynomial of minimum degree through conditions anywhere in the segment (Norton §8.3, §8.5).
 
-    n conditions determine n coefficients; degree n − 1.
+    n conditions determine the n coefficients of a polynomial of degree n − 1.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def _fit_conditions(angle: float, conditions: Sequence[Condition]) -> Pieces:
 
 
 def _evaluate_powers(x: float, terms: int, order: int) -> Real:
-    """Return the derivatives of an order of 1, x, x², ... at x."""
+    """Return the derivatives of given order of 1, x, x², ... at x."""
     return np.array([math.perm(k, order) * x ** (k - order) if k >= order else 0.0 for k in range(terms)])
 
 

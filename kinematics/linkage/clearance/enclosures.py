@@ -8,7 +8,7 @@ Re(e^{−iφ} k) = r has the solutions φ = arg k ∓ arccos(r/|k|), so that
     δ ≤ (maximum change of arg k) + (maximum change of arccos(r/|k|)):
 
     RRR   |k| = b d with d the distance of the pins, r/|k| = (b² + d² − c²)/(2 b d); d changes by e = ε_p + ε_q at most;
-          the ratio is least at d² = b² − c² where that is between the extremes of d, and monotonic outside;
+          the ratio is minimal at d² = b² − c² if that lies between the extremes of d, and monotonic otherwise;
     RPR   |k| = d, r is constant;
     RRP   |k| = b, arg k changes as the line's link turns, r by as much as the pin and the line's link at the pin move.
 
@@ -81,7 +81,7 @@ def _bound_slotted(apart: float, d: float, r: float) -> float:
 def _bound_carried(x: Complex, on: Mask, pin: int, turned: float, moved: Real) -> float:
     """Bound the displacement of the point of a link at a pin that is not its own.
 
-    It moves at most like a joint of the link (``on``) plus the rotation about that.
+    It moves at most as far as a joint of the link (``on``), plus the displacement by the rotation about that joint.
     """
     carried = np.inf
     for k in range(len(x)):
@@ -318,7 +318,7 @@ def _bound_by_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds:
         largest = 0.0
         for row in range(links):
             largest = max(largest, np.abs(inverse[row]).sum())
-        # Ill-conditioned, hence near a toggle: keep the trivial bound π.
+        # The loops are ill-conditioned near a toggle: keep the trivial bound π.
         if not invert(inverse) * largest < MAX_CONDITION:
             continue
         change = 2.0 * math.sin(0.5 * min(half[n], math.pi))

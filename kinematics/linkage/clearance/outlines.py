@@ -56,17 +56,17 @@ def measure_distance(first: Complex, second: Complex) -> float:
 
 
 MAX_PLAIN_PAIRS = 64
-"""Number of pairs of edges up to which all are compared: bars would not be faster."""
+"""Number of pairs of edges up to which all pairs are compared: bars would not be faster."""
 
 MIN_STRETCH_EDGES = 4
 """Maximum number of edges of a stretch that is not divided."""
 
 SEPARATION_TOLERANCE = 1e-9
-"""Share of the largest coordinate: outlines separated by more than this do not cross, regardless of rounding, so a
-single point decides whether one lies inside the other."""
+"""Distance, as a share of the largest coordinate, above which outlines do not cross, regardless of rounding: a single
+point then decides whether one lies inside the other."""
 
 ROUNDING_ERROR = 1e-14
-"""Share of the largest coordinate by which rounding may overestimate the distance of bars."""
+"""Amount, as a share of the largest coordinate, by which rounding may overestimate the distance of bars."""
 
 MAX_STACK_DEPTH = 160
 """Maximum size of the stack of pairs of stretches: one per halving, enough for outlines of 2⁶⁴ edges."""
@@ -276,6 +276,7 @@ def _measure_uncrossed(a: complex, b: complex, c: complex, d: complex) -> float:
 
 @njit(**OPTIONS)
 def _measure_to_segment(z: complex, a: complex, b: complex) -> float:
+    """Measure the distance of a point from the segment a–b."""
     along, offset = b - a, z - a
     square = along.real * along.real + along.imag * along.imag
     share = 0.0
@@ -338,7 +339,7 @@ def measure_distances(
     Returns
     -------
     float, shape (m,)
-        −:data:`OVERLAP_DEPTH` if they intersect; NaN without a position.
+        Distances: −:data:`OVERLAP_DEPTH` if the cores intersect; NaN without a position.
     """
     out = np.empty(len(items))
     most = 0

@@ -129,7 +129,7 @@ class Scene:
         Returns
         -------
         distance, bound : float, shape (m,)
-            Of the outlines, in length units. The bound is infinite if unknown.
+            Distances of the outlines, and bounds of their decrease, in length units. An unknown bound is infinite.
         """
         # Pairs share positions: each distinct (input, half-width) is driven once, packed into a complex number.
         around, item = np.unique(centre + 1j * half, return_inverse=True)
@@ -153,6 +153,7 @@ class Scene:
         return self._evaluate_pose(inputs).valid
 
     def _evaluate_pose(self, inputs: Real) -> _Pose:
+        """Drive the mechanism to inputs, shape (n,), and return its pose."""
         code, links = self._program.code, self._program.links
         motion = drive(self._mechanism, inputs, order=0)
         places = np.stack([motion.joints[name][0] for name in self._mechanism.joints]) - self._origin

@@ -18,7 +18,7 @@ from kinematics.linkage.clearance.scene import Pairs, Scene
 from kinematics.linkage.planar.mechanism import Mechanism
 
 MIN_HALF_WIDTH = 1e-10
-"""Minimum half-width of a part, in the units of :data:`scene.FIRST`: within it parts move by less than
+"""Minimum half-width of a part, in the units of :data:`scene.INITIAL_HALF_WIDTH`: within it parts move by less than
 :data:`DISTANCE_TOLERANCE`, so that a pair that only just reaches the required distance is decided."""
 
 END_OFFSET = 1e-7
@@ -34,8 +34,8 @@ SEARCH_MARGIN = 2e-3
 """Share of the size by which a sample may exceed the smallest one and still start a search for the minimum."""
 
 SECTION_COUNT, NARROWING_STEPS = 9, 14
-"""Number of sections of a bracket, of which the two next to the minimum are kept, and number of repetitions: to 1e-9 of
-the bracket, where a minimum is known to rounding. One batch costs hardly more than a single evaluation."""
+"""Number of sections of a bracket, of which the two next to the minimum are kept, and number of repetitions. They
+shrink the bracket to 1e-9, where a minimum is known to rounding. One batch costs hardly more than one evaluation."""
 
 
 Interval = tuple[float, float]
@@ -50,7 +50,7 @@ class SweepResult(NamedTuple):
     ----------
     least : float
         Minimum distance between the outlines. If the cores intersect it is minus the sum of the radii and a little
-        more (:data:`outlines.MEETING`), so that crossing links without width rank below touching ones.
+        more (:data:`outlines.OVERLAP_DEPTH`), so that crossing links without width rank below touching ones.
     at : float
         Input of the minimum: radians, or position along the slide.
     keeps : bool
@@ -84,9 +84,9 @@ def sweep_pairs(
         One design, of shape ().
     parts : sequence of Part
     pairs : sequence of (int, int)
-        Parts by their numbers.
+        Pairs of indices into ``parts``.
     low, high : float
-        The range, absolute: radians, or positions along the input slide. On the reference's branch.
+        The range of absolute inputs, radians or positions along the input slide, on the reference's branch.
     wanted : float
         Required distance, in length units; a negative one allows outlines to overlap by that amount.
     nearest : str
@@ -96,7 +96,7 @@ def sweep_pairs(
 
     Returns
     -------
-    list of Swept
+    list of SweepResult
         In the order of ``pairs``.
 
     Raises
@@ -138,7 +138,7 @@ def sweep_pairs(
         if looked + 2 * np.count_nonzero(more) > MAX_DISTANCES:
             decided[pair[open_to_wanted | ~known]] = False
             break
-        # Parts at the limit of refinement are given up as undecided.
+        # Parts at the limit of refinement stay undecided.
         lost = more & (half <= MIN_HALF_WIDTH * scene.unit)
         decided[pair[lost & (open_to_wanted | ~known)]] = False
         pair, centre, half = _split_halves(pair[more & ~lost], centre[more & ~lost], half[more & ~lost])

@@ -72,7 +72,7 @@ def grashof_excess(lengths: ArrayLike) -> Real:
 def grashof_class(lengths: ArrayLike) -> NDArray[np.int64]:
     """Return class 1 (Grashof), 2 (non-Grashof) or 3 (special case) of four lengths on the last axis (Norton 2.8).
 
-    Raises as :func:`grashof_excess` does.
+    It raises the same errors as :func:`grashof_excess`.
     """
     lengths = np.asarray(lengths, np.float64)
     excess = grashof_excess(lengths)

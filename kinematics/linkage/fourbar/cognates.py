@@ -18,7 +18,7 @@ not required: with P on the line A B (Cayley's diagram flattened) ζ is real and
 moving pivot the curve is a circle or an arc, ζ or 1 − ζ vanishes, and there is no cognate.
 
 *Geared fivebar* (Norton, Fig. 3-28). The left cognate's link ζ v at O2 and the right one's −(1 − ζ) v at O4 both turn
-with the source's coupler, hence with each other; u and w, from their ends, meet in P.
+with the source's coupler, and therefore with each other; u and w, from their ends, meet in P.
 
 *Parallel motion* (Norton, Example 3-11). The right cognate moved by O2 − OC has its input (1 − ζ) u on O2, in one piece
 with u, and its coupler point at Q = P + O2 − OC. A link P Q, which does not turn, takes the place of its output link.
@@ -120,10 +120,11 @@ class Cognates(NamedTuple):
 class GearedFivebarCognate:
     """A geared fivebar that traces the curve of a fourbar; fields of shape designs, angles in radians.
 
-    From ``input_pivot`` the input link and coupler 1, from ``output_pivot`` the output link and coupler 2; the couplers
-    are pinned together at the coupler point, ``coupler_point`` in the frame of coupler 1 (origin at the input link's
-    pin, real axis along it). Output rotation = ``gear_ratio`` × input rotation; ``phase`` is the output's angle from
-    the ground line when the input lies along it. The input's angle is that of the source's coupler + ``input_offset``.
+    The input link and coupler 1 start from ``input_pivot``, the output link and coupler 2 from ``output_pivot``. The
+    couplers are pinned together at the coupler point, which is ``coupler_point`` in the frame of coupler 1 (origin at
+    the input link's pin, real axis along the coupler). The output turns ``gear_ratio`` times as far as the input, and
+    ``phase`` is its angle from the ground line when the input lies along that line. The input's angle is that of the
+    source's coupler plus ``input_offset``.
     """
 
     input_pivot: Complex

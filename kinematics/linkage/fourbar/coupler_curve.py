@@ -57,8 +57,8 @@ class DoublePoints(NamedTuple):
     """The three double points on the circle of singular foci, shape designs + (3,), real ones first.
 
     ``valid`` marks the real ones; ``kind`` is :data:`CRUNODE`, :data:`CUSP` or :data:`ACNODE` (also where ``valid`` is
-    False). ``input_angle`` (radians) and ``assembly``, shape designs + (3, 2), are the two configurations at a crunode,
-    twice the same one at a cusp; NaN and +1 without a configuration.
+    False). ``input_angle`` (radians) and ``assembly``, shape designs + (3, 2), are the two configurations at a crunode.
+    At a cusp both are the same; without a configuration they are NaN and +1.
     """
 
     valid: Mask
@@ -69,8 +69,9 @@ class DoublePoints(NamedTuple):
 
 
 def coupler_curve_degree(links: int) -> int:
-    """Return the maximum degree of a coupler curve of a linkage of n links, m = 2 · 3^(n/2 − 1) (Wunderlich; Norton
-    3.3).
+    """Return the maximum degree of a coupler curve of a linkage of n links, m = 2 · 3^(n/2 − 1).
+
+    The formula is Wunderlich's (Norton 3.3).
 
     Raises
     ------
@@ -152,7 +153,7 @@ def find_double_points(linkage: Fourbar) -> DoublePoints:
         k1, k2 = 0.5 * (_square_magnitude(q2) + near**2 - a * a), 0.5 * (_square_magnitude(q4) + far**2 - c * c)
         both = (k1 * second * near + k2 * first * far) / ((second * near) ** 2 + (first * far) ** 2)
         turn = -u * v * ground.conj() / delta.conj()
-        # Positive: two coupler directions, hence a crunode.
+        # A positive gap gives two coupler directions: a crunode.
         gap = 1.0 - both**2 / _square_magnitude(turn)
         kind = np.where(np.abs(gap) <= CUSP_TOLERANCE, CUSP, np.where(gap > 0.0, CRUNODE, ACNODE))
         spread = np.sqrt(np.where(kind == CRUNODE, gap, 0.0)) * np.abs(turn)

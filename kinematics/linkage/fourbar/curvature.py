@@ -59,11 +59,11 @@ path, where rounding of the position determines the direction."""
 class Pole(NamedTuple):
     """The coupler's pole over designs × input angles.
 
-    ``valid`` is False at change points and where the linkage does not close; ``finite`` is False where the coupler only
-    translates; all points are NaN there. ``point`` is the pole, ``rate`` its velocity dI/dθ3 (complex length per radian
-    of the coupler's turn) along the tangent of the centrodes, ``moving`` the pole in the coupler's frame (as
-    ``Fourbar.coupler_point`` is), ``inflection_pole`` the point opposite to the pole on the inflection circle of
-    diameter ``inflection_diameter``.
+    ``valid`` is False at change points and where the linkage does not close, ``finite`` where the coupler only
+    translates; all points are NaN there. ``point`` is the pole, and ``rate`` its velocity dI/dθ3 (complex length per
+    radian of the coupler's rotation) along the tangent of the centrodes. ``moving`` is the pole in the coupler's frame
+    (that of ``Fourbar.coupler_point``). ``inflection_pole`` is the point opposite to the pole on the inflection circle,
+    whose diameter is ``inflection_diameter``.
     """
 
     valid: Mask
@@ -89,8 +89,10 @@ class PathCurvature(NamedTuple):
 
 
 class _Vectors(NamedTuple):
-    """Link vectors in units of the linkage's size, and ω2 : ω3 : ω4 = ``scale`` × the cross products, the
-    largest 1 in absolute value."""
+    """Link vectors in units of the linkage's size, and the rates ω2 : ω3 : ω4.
+
+    The rates are ``scale`` × the cross products, and the largest has the absolute value 1.
+    """
 
     at: Positions
     axis: AngleAxis
@@ -104,7 +106,7 @@ class _Vectors(NamedTuple):
 
 
 def find_pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Pole:
-    """The coupler's pole with its velocity and the inflection circle.
+    """Compute the coupler's pole with its velocity and the inflection circle.
 
     Over a range of input angles ``point`` is the fixed centrode and ``moving`` the moving centrode (Norton, Sec. 6.5).
     """
@@ -144,6 +146,7 @@ def compute_path_curvature(
 
 
 def _build_vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _Vectors:
+    """Build the link vectors and the rates of the smooth motion."""
     at = positions(linkage, input_angle, assembly)
     theta, axis = with_angle_axis(linkage, input_angle, np.shape(assembly))
     # Dimensionless vectors keep the tolerances independent of the unit.

@@ -1,4 +1,4 @@
-"""Compiled sweeps of the fourbar over designs × input angles; its formulas are those of :mod:`fourbar`.
+"""Compiled sweeps of the fourbar over designs × input angles, by the formulas of :mod:`closed_form`.
 
 ``pivots`` are O2, O4 and the coupler point in its link's frame, ``lengths`` are a, b, c. With v = B − O4 the
 derivatives of the loop reduce to products of the link vectors; Δ = v × u is the determinant of each order, and

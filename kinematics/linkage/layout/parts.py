@@ -75,13 +75,13 @@ class Pin(NamedTuple):
     Attributes
     ----------
     joint : str
-        Its joint; the first of coincident ones.
+        Joint of the pin; the first one if several coincide.
     plates : frozenset of int
         The plates that it joins.
     grounded : bool
-        Whether it stands on the base, fixed or on a block in a slot there.
+        Whether the pin stands on the base, either fixed or on a block in a slot.
     outline : Part
-        Its disc.
+        Disc of the pin.
     """
 
     joint: str
@@ -202,6 +202,7 @@ def _find_travel(mechanism: Mechanism, low: float, high: float) -> list[tuple[fl
 
 
 def _find_minimum(values: Real) -> float:
+    """Find the minimum of samples on a grid, refined by a parabola."""
     k = int(np.nanargmin(values))
     if not 0 < k < len(values) - 1:
         return float(values[k])
@@ -286,7 +287,7 @@ def list_gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
 
 
 def _find_hull(points: Sequence[complex], near: float) -> Complex:
-    """Find the corners of the convex hull, counter-clockwise (Andrew's chain); one or two if all are collinear."""
+    """Find the corners of the convex hull, counter-clockwise (Andrew's monotone chain); one or two if collinear."""
     listed: list[complex] = []
     for point in sorted(points, key=lambda z: (z.real, z.imag)):
         # Nearly coincident points would create degenerate edges.

@@ -3,8 +3,8 @@
 Parts that come closer to each other than the gap *meet*. Plates that meet lie in different planes, and so do plates
 joined by a pin; a plate that meets a pin must not lie between the planes that the pin joins
 (:mod:`~kinematics.linkage.layout.planes`). If no arrangement is possible over the whole motion, the longest feasible
-range of the input is found: it starts and ends where some pair begins or ceases to keep the gap, and a collision in a
-range is one in every wider range, so a single pass over these ends finds it.
+range of the input is found. It starts and ends where some pair begins or ceases to keep the gap, and a collision in a
+range also occurs in every wider range, so a single pass over these ends finds it.
 
 A through shaft at a fixed pivot rests in two bases and occupies every plane. If a plate meets it, the shaft is replaced
 by a stub shaft from the better one of the bases to the farthest of its plates.
@@ -44,8 +44,8 @@ number of rounds, each an eighth as wide as the one before."""
 class Clash(NamedTuple):
     """Two parts that the planes do not separate, by their names.
 
-    ``distance`` is the minimum of their outlines near the input ``at``, about the minimum over the motion; negative if
-    they overlap, but not below minus the sum of their radii.
+    ``distance`` is the minimum distance of their outlines near the input ``at``, approximately that over the motion. It
+    is negative if they overlap, but not below minus the sum of their radii.
     """
 
     parts: tuple[str, str]
@@ -132,14 +132,15 @@ def arrange_planes(
     addendum : float
         Height of gear teeth beyond their pitch circles.
     whole : bool
-        Whether only the whole motion is acceptable: then the free range, the slowest part, is not searched.
+        Whether only the whole motion is acceptable. The free range, whose search takes most of the time, is then not
+        searched.
 
     Raises
     ------
     TopologyError
         For gears without shafts.
     DimensionError
-        For more plates, or stub shafts among them, than can be arranged.
+        For more plates than can be arranged, or too many stub shafts among them.
     """
     parts = build_parts(mechanism, link_width, pin_diameter, low, high, slot_ends, addendum)
     scene = _Scene(mechanism, parts, low, high, gap)
@@ -192,7 +193,7 @@ class _Arrangement(NamedTuple):
 
 
 class _Builder:
-    """Search for the best planes; ``shafts`` should pass through all planes, ``stubs`` are those that cannot."""
+    """Search for the best planes; ``shafts`` should pass through all planes, and ``stubs`` are those that cannot."""
 
     def __init__(self, parts: Parts, shafts: set[int], stubs: set[int]) -> None:
         self._parts = parts

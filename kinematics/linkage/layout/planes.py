@@ -8,7 +8,7 @@ that the pin reaches.
 An arrangement is built plane by plane. Whether plates T can form the next plane depends only on the set S of plates
 below, not on their order: a pin is present if it has begun (a plate in S or T, or the base) and has not ended (all its
 plates in S and no base above). So the optimum for all plates follows from the optimum for fewer (Bellman), over all
-sets and all next planes, 3ⁿ steps for n plates; the search is exhaustive, and the minimum is proved. Minimized are, in
+sets and all next planes, 3ⁿ steps for n plates; the search is exhaustive, and the minimum is proved. It minimizes, in
 this order, the number of plates that block a pin they meet, the number of planes, and the total length of the pins in
 planes.
 """
@@ -37,8 +37,7 @@ _UNKNOWN_COST = np.iinfo(np.int64).max
 
 
 class Spindle(NamedTuple):
-    """A pin by numbers: the plates that it joins, the plates that meet it, and the bases (below, above) that hold
-    it."""
+    """A pin: the numbers of the plates that it joins and of those that meet it, and the bases that hold it."""
 
     plates: frozenset[int]
     meets: frozenset[int] = frozenset()

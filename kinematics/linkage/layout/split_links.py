@@ -1,4 +1,4 @@
-"""A linkage on both sides of a base: one of its links is two plates on a shaft that turns in that base.
+"""A linkage on both sides of a base: one of its links consists of two plates on a shaft that turns in that base.
 
 If a crank turns fully around the fixed pivot of a link whose coupler passes over both shafts, as in a Whitworth quick
 return, every plane is blocked by some shaft. The link is then *divided*: one plate below a second base and one above
@@ -168,7 +168,7 @@ _Met = Sequence[tuple[int, int, float]]
 
 
 def _find_meetings(mechanism: Mechanism, parts: Parts, below: set[int], low: float, high: float, gap: float) -> _Met:
-    """Find plates and pins that come too close, among those not joined by a pin and possibly on one side of the
+    """Find plates and pins that come too close, among those that no pin joins and that may lie on one side of the
     base."""
     plates, pins = parts.plates, parts.pins
     count = len(plates)
@@ -191,7 +191,10 @@ def _find_meetings(mechanism: Mechanism, parts: Parts, below: set[int], low: flo
 
 
 class _SideChoice:
-    """Best planes of both sides for one choice of bases for the shafts inside; ``hung``: from the second base."""
+    """Best planes of both sides for one choice of bases for the shafts inside.
+
+    ``hung`` tells for each of these shafts whether it hangs from the second base.
+    """
 
     def __init__(self, parts: Parts, below: set[int], hung: dict[int, bool], met: _Met) -> None:
         self._parts, self._hung, self._met = parts, hung, met
@@ -214,6 +217,7 @@ class _SideChoice:
         return len(self.clashes), max(self.planes), sum(high - low for low, high in self.reaches)
 
     def _arrange_side(self, side: int, plates: Sequence[int]) -> tuple[int, ...]:
+        """Find the best planes of the plates on one side of the second base."""
         pairs = [pair[:2] for pair in self._met if pair[1] < self._count]
         pairs += [pair for pin in self._parts.pins for pair in combinations(sorted(pin.plates), 2)]
         apart = [(self._own[k], self._own[n]) for k, n in pairs if self._side[k] == self._side[n] == side]
@@ -242,6 +246,7 @@ class _SideChoice:
         return {0} if self._hung.get(number) is False else {1}
 
     def _find_reach(self, number: int) -> tuple[int, int]:
+        """Return the lowest and the highest plane of a pin, counted from the first base."""
         ends = [
             side * self.base + plane
             for side in (0, 1)

@@ -44,9 +44,10 @@ REPEAT_TOLERANCE = 1e-9
 class Branch(NamedTuple):
     """One branch: a range that the input can drive through.
 
-    ``low`` and ``high`` are input angles (radians, ``low`` within the first turn) or positions; ``full``: the input
-    rotates fully, and the range is one whole cycle. ``signs`` are the assemblies by closure, ``low_closure``
-    and ``high_closure`` the link whose closure folds flat at the ends. ``circuit`` counts from 0.
+    ``low`` and ``high`` are input angles (radians, ``low`` within the first turn) or positions along the input slide.
+    If the branch is ``full``, the input rotates fully and the range is one whole cycle. ``signs`` are the assemblies by
+    closure. ``low_closure`` and ``high_closure`` name the links whose closures fold flat at the ends. ``circuit`` is
+    counted from 0.
     """
 
     circuit: int
@@ -75,7 +76,7 @@ def compute_cycle(mechanism: Mechanism) -> float:
 def compute_cycle_on_branch(mechanism: Mechanism, branch: Branch) -> float:
     """Compute the input rotation after which a mechanism repeats on a full branch: :func:`compute_cycle` or a multiple.
 
-    A triad may be in another position after one turn of its input, and back after two.
+    A triad may be in another position after one turn of its input, and return to the first after two.
     """
     period = compute_cycle(mechanism)
     return period * max(1, round((branch.high - branch.low) / period))
@@ -96,9 +97,9 @@ def find_dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     Raises
     ------
     TopologyError
-        For a class III mechanism or one driven by a slide; if gears do not repeat within ``TURNS_AT_MOST`` turns, or
-        turn a link more than ``MOST_TURNS`` times until then; or if a link swings freely at a change point and others
-        depend on it.
+        For a class III mechanism or one driven by a slide; if gears do not repeat within :data:`MAX_TURNS` turns, or
+        turn a link more than :data:`MAX_FASTEST_TURNS` times until then; or if a link swings freely at a change point
+        and others depend on it.
     """
     decomposition = decompose(mechanism)
     if decomposition.left or mechanism.has_slide_input:

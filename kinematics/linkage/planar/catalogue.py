@@ -17,7 +17,8 @@ from kinematics.linkage.fourbar.closed_form import CROSSED_ASSEMBLY, OPEN_ASSEMB
 from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 
 PIVOT_TOLERANCE = 1e-14
-"""Distance, as a share of the ground, within which a crank pin coincides with a pivot: its direction is rounding."""
+"""Distance, as a share of the ground, within which a crank pin coincides with a pivot: its direction is then only
+rounding."""
 
 
 def _require_sign(name: str, sign: int) -> None:
@@ -94,8 +95,8 @@ def make_inverted_slider_crank(
 
     The line passes through B, the end of the output link of length c from O4, at ``line_angle`` (Norton's γ, the angle
     of link 3 minus that of link 4) from the line O4 → B. The line is directed from B at that angle. In an ``open``
-    mechanism A lies ahead of its point nearest to O4, in a ``crossed`` one behind it. With c = 0 the line passes
-    through O4, and B only marks the direction of the output link.
+    mechanism A lies ahead of the point of the line nearest to O4, in a ``crossed`` one behind that point. With c = 0
+    the line passes through O4, and B only marks the direction of the output link.
 
     Raises
     ------
@@ -180,7 +181,7 @@ def make_geared_fivebar(
     """Build the geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
 
     ``open``: C, where the couplers meet, lies to the left of the directed line from A to B. ``coupler_point`` is P on
-    coupler 1 in its frame, origin at A, real axis towards C. ``input_angle`` counts full turns.
+    coupler 1 in its frame, origin at A, real axis towards C. ``input_angle`` is not reduced by full turns.
     """
     _require_sign("assembly", assembly)
     require("gear_ratio", "finite", np.asarray(gear_ratio), np.isfinite(gear_ratio))
@@ -272,8 +273,8 @@ def make_hart(
     Raises
     ------
     DimensionError
-        If the short and the long link do not reach from A and O4 to each other, for a share outside 0 … 1, a short
-        link that is not shorter, or a side other than +1 and −1.
+        If the short and the long link cannot reach each other from A and O4, or for a share outside 0 … 1, a short link
+        that is not the shorter one, or a side other than +1 and −1.
     """
     _require_sign("side", side)
     require("share", "between 0 and 1", np.asarray(share), np.bool_(0.0 < share < 1.0))

@@ -31,12 +31,12 @@ CACHE_SIZE = 8
 
 
 class Step(NamedTuple):
-    """One closure. ``link`` turns about the known joint ``pin``; the other fields depend on the kind.
+    """One closure: ``link`` turns about the known joint ``pin``. The other fields depend on the kind.
 
-    gear: ``other`` is the known link, ``ratio`` the rotation of ``link`` per rotation of it. carried: ``joint`` is the
-    second known pin. RRP: ``joint`` of the link stays on ``slide``'s line in a known link. RPR: the known ``joint``
-    stays on ``slide``'s line in the link. RRR: the links ``link`` and ``other`` share ``joint``; ``other`` turns about
-    the known joint ``other_pin``.
+    gear: ``other`` is the known link, ``ratio`` the rotation of ``link`` per rotation of ``other``. carried: ``joint``
+    is the second known pin. RRP: ``joint`` of the link stays on ``slide``'s line in a known link. RPR: the known
+    ``joint`` stays on ``slide``'s line in the link. RRR: the links ``link`` and ``other`` share ``joint``; ``other``
+    turns about the known joint ``other_pin``.
     """
 
     kind: Literal["gear", "carried", "RRP", "RPR", "RRR"]
@@ -95,6 +95,7 @@ def _find_next_step(
     known: list[str],
     joints: set[str],
 ) -> Step | None:
+    """Find the closure that follows from the known links and joints; None if no single step does."""
     unknown = [link for link in links if link not in known]
     pins = {link: [joint for joint in links[link] if joint in joints] for link in unknown}
     # Prefer single links to pairs: a link on two known pins first, then gears and slides, dyads last.

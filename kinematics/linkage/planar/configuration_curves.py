@@ -1,4 +1,4 @@
-"""All configurations of a mechanism that closes by dyads, as curves on which everything is smooth.
+"""All configurations of a mechanism that closes by dyads, as curves along which its motion is smooth.
 
 Take the closures in their order. Before the first one, configurations are the input's circle. Each closure has a margin
 m on the current curves: a smooth function that is positive where the closure exists. Where m is positive all along
@@ -40,7 +40,8 @@ CELL_COUNT = 64
 """Initial number of cells of a curve, per turn of its fastest link."""
 
 END_TOLERANCE = 1e-7
-"""Share of an arc within which a turn coincides with the arc's folded end: the input differs only by rounding."""
+"""Distance, as a share of an arc, within which a turn coincides with the arc's folded end: the inputs differ only by
+rounding."""
 
 MIN_SWING = 0.1
 """Difference, radians, of a link's directions in the two assemblies at a change point above which it swings freely."""
@@ -61,14 +62,17 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ChangePoint:
-    """Crossing of curves of one closure, by its number. ``swings``: a link is free there, since its pins coincide."""
+    """Crossing of curves of one closure, whose number is ``level``.
+
+    If it ``swings``, a link is free to rotate there, since its pins coincide.
+    """
 
     level: int
     swings: bool
 
 
 class End(NamedTuple):
-    """Open end of a curve: input, the change point, and the closures whose assemblies meet there."""
+    """Open end of a curve: its input, its change point, and the closures whose assemblies meet there."""
 
     theta: float
     point: ChangePoint
@@ -86,7 +90,7 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Configurations by a parameter from ``low`` to ``high``, on a circle if ``closed``.
+    """Curve of configurations over a parameter from ``low`` to ``high``, on a circle if ``closed``.
 
     ``shape`` is the map from the parameter v to that of the curve ``below``, u: identity (``straight``), a cosine
     between two folds (``round``), or v² from the fold ``a`` to the open end ``b`` (``bend``).
@@ -206,7 +210,7 @@ def stack_chains(curves: Sequence[Curve]) -> Real:
 
 
 def evaluate_places(chains: Real, row: Integers, at: Real) -> Place:
-    """Evaluate places on many curves."""
+    """Evaluate places on many curves: at parameters ``at``, each on the curve of its ``row`` of chains."""
     place = np.empty((3, len(at)))
     signs = np.empty((chains.shape[1], len(at)), np.int64)
     _fill_places(chains, row, at, place, signs)
@@ -215,6 +219,7 @@ def evaluate_places(chains: Real, row: Integers, at: Real) -> Place:
 
 @njit(cache=True, nogil=True)
 def _fill_places(chains: Real, row: Integers, at: Real, place: Real, signs: Integers) -> None:
+    """Fill input, rate and second derivative into ``place`` (3, n), and the assemblies into ``signs``."""
     closures = chains.shape[1]
     for n in range(len(at)):
         u, rate, second = at[n], 1.0, 0.0
@@ -296,6 +301,7 @@ def _build_next_curves(closures: Closures, level: int, curve: Curve, arcs: list[
 
 
 def _build_round_curve(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
+    """Build the closed curve over an arc between two folds."""
     # Both folds, plus two images of each turn of the curve below.
     own = [Turn(0.0, curve.evaluate_input(a), level), Turn(np.pi, curve.evaluate_input(b), level)]
     for turn in turns:
@@ -307,6 +313,7 @@ def _build_round_curve(curve: Curve, level: int, a: float, b: float, turns: list
 
 
 def _build_bend_curve(curve: Curve, level: int, fold: float, opening: float, turns: list[Turn], end: End) -> Curve:
+    """Build the open curve over an arc between a fold and a change point."""
     own = [Turn(0.0, curve.evaluate_input(fold), level)]
     for turn in turns:
         part = (turn.at - fold) / (opening - fold)

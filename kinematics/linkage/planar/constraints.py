@@ -33,17 +33,17 @@ RANK_TOLERANCE = 1e-5
 """Singular value, as a share of the largest, below which constraints of rounded dimensions are dependent."""
 
 MIN_INPUT_MOVE = 0.2
-"""Move of the input from the reference, radians or shares of the size, that proves that a mechanism moves."""
+"""Displacement of the input from the reference, radians or shares of the size, that proves that a mechanism moves."""
 
 MIN_STEP = 1e-9
-"""Step of the input below which the motion from the reference ends."""
+"""Step of the input, radians or shares of the size, below which the motion from the reference ends."""
 
 MAX_TRIALS = 100
 """Maximum number of steps, including rejected ones."""
 
 LIMIT_RATIO = 0.1
-"""Smallest singular value, as a share of its maximum along the motion, that marks an end as a limit of the motion:
-there it goes with the root of the distance. At an end where constraints disagree it hardly changes."""
+"""Smallest singular value, as a share of its maximum along the motion, below which an end is a limit of the motion:
+near a limit it goes with the root of the distance. At an end where constraints disagree it hardly changes."""
 
 MAX_STEP_ROTATION = 0.5
 """Rotation of a link in one step, radians, above which the step may have reached another assembly."""
@@ -57,7 +57,7 @@ MAX_ITERATIONS = 60
 step only halves the error, and the misfit is its square."""
 
 STEP_TOLERANCE = 1e-10
-"""Step, as a share of the size or in radians, at which the iteration has converged."""
+"""Step, as a share of the size or in radians, below which the iteration has converged."""
 
 SINGULAR_STEP_TOLERANCE = 1e-14
 """The same near a singular position, times the smallest singular value: rounding moves poses by this amount there."""
@@ -71,7 +71,7 @@ class Poses(NamedTuple):
 
     @classmethod
     def unknown(cls, length: int, links: int, count: int) -> Poses:
-        """Make unknown poses: NaN."""
+        """Make unknown poses, filled with NaN."""
         return cls(np.full((length, links, count), np.nan + 0j), np.full((length, links, count), np.nan))
 
     def take(self, which: Mask | Integers) -> Poses:
@@ -213,6 +213,7 @@ class Constraints:
         return bool(moved.all())
 
     def _is_moving(self, at: Real, way: float) -> NDArray[np.bool_]:
+        """Return which designs the input can move from the reference in one direction; see :meth:`moves`."""
         count = at.shape[1]
         rates = np.concatenate([at, np.full((1, count), way)])
         poses, _, least = self.settle(self.reference, rates)

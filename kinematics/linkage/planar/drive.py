@@ -39,7 +39,7 @@ class MechanismMotion:
     input : float, shape (n,) + S + (N,)
         The input: angle of the input link, radians, or position along the slide.
     angles : dict of str to float, shape (n,) + S + (N,)
-        Link angles, radians and rad/s^n: from the reference angle, continuous along the motion's sign choices.
+        Link angles in radians, and their rates in rad/s^n. Angles are the reference angle plus the rotation.
     joints : dict of str to complex, shape (n,) + S + (N,)
         Joints in the mechanism's own coordinates and their derivatives per s^n.
     slides : dict of str to float, shape (n,) + S + (N,)
@@ -85,12 +85,12 @@ def drive(
     mechanism : Mechanism
         Designs of shape S.
     input : float
-        Absolute input angles, radians (or positions along the input slide), broadcasting with S + (1,); not reduced by
-        full turns, which matter for gears.
+        Absolute input angles, radians, or positions along the input slide, broadcasting with S + (1,). Full turns
+        matter for gears, so angles are not reduced.
     speed, acceleration, jerk : float
         Rates of the input, broadcasting with the inputs; with the defaults results are derivatives by the input.
     signs : tuple of int arrays, optional
-        Assembly at each dyadic closure; the reference configuration's by default.
+        Assembly at each dyadic closure; by default those of the reference configuration.
     order : int
         Highest derivative computed, 0 to 3; jets have the length ``order + 1``.
 
@@ -257,8 +257,8 @@ def is_reachable(mechanism: Mechanism, inputs: Real) -> Mask:
 def has_given_up(mechanism: Mechanism) -> bool:
     """Return whether continuation of this class III design was abandoned before its end in any drive up to now.
 
-    Links of very different lengths can need too many certified steps. Positions beyond are reported as not valid
-    although they may exist.
+    Links of very different lengths can need too many certified steps. Positions beyond the last step are reported as
+    not valid although they may exist.
     """
     return bool(decompose(mechanism).left) and _build_track(mechanism, 0)[1].has_given_up
 

@@ -28,10 +28,10 @@ from kinematics.compiling import KernelOptions, njit
 from kinematics.linkage.kernels import TOGGLE_SINE, TOGGLE_SLACK
 
 GEAR, CARRIED_LINK, RRP, RPR, RRR, GIVEN_ROTATION = range(6)
-"""Codes of closures; GIVEN is a link whose rotation is an argument (class III, solved by :mod:`triads`)."""
+"""Codes of closures. GIVEN_ROTATION is a link whose rotation is an argument (class III, solved by :mod:`triads`)."""
 
 KIND, LINK, PIN, JOINT, OTHER_LINK, OTHER_PIN, SLIDE, CLOSING = range(8)
-"""Columns of a program. CLOSING numbers the closures with two solutions; −1 elsewhere."""
+"""Columns of a program. CLOSING is the number of a closure among those with two solutions, −1 for others."""
 
 COINCIDENCE_TOLERANCE = 1e-13
 """Length of the vector k, as a share of its reach, below which its direction is only rounding."""
@@ -114,7 +114,7 @@ def drive(
     per call, a quarter of a call in root finding.
 
     own : (D,), index of the mechanism of each design. signs : (steps, D). moved : (D, n, N), input from the reference.
-    given : (links, D, n, N), rotations of GIVEN links.
+    given : (links, D, n, N), rotations of the links of kind GIVEN_ROTATION.
     """
     length = moved.shape[1]
     x = np.zeros((joints.shape[1], 4), np.complex128)
@@ -270,9 +270,10 @@ def _equate_links(
     base: Complex,
     length: int,
 ) -> None:
-    """Set k and r of two links that meet (RRR), for the link with this arm and length ``reach``; ``first``: the other.
+    """Set k and r of two links that meet (RRR), for the link with the given arm of length ``reach``.
 
-    With the base from pin to pin, k = arm̄ · base and r = (|base|² + reach² − far²)/2.
+    ``first`` is 1 if that is the second of both links, whose base points backwards, and ``far`` is the length of the
+    other one. With the base from its own pin to the other pin, k = arm̄ · base and r = (|base|² + reach² − far²)/2.
     """
     for n in range(length):
         base[n] = x[other_pin, n] - x[pin, n]
@@ -429,7 +430,7 @@ def _place_link(
     x: Complex,
     length: int,
 ) -> None:
-    """Place a link from its rotation (or e^{iφ} and rates) and its known pin: its shift, and the joints it
+    """Place a link by its rotation (or e^{iφ} and rates) and its known pin: fill its shift and the joints that it
     determines."""
     if turned[link]:
         unit[link, 0] = complex(math.cos(rotation[link, 0]), math.sin(rotation[link, 0]))

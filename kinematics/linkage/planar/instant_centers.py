@@ -1,4 +1,4 @@
-"""Instant centres of any planar mechanism: the point with the same velocity on two links.
+"""Instant centres of any planar mechanism: the points that have the same velocity on two links.
 
 A link that turns at ω and moves a point z at velocity v moves every point p at v + iω(p − z). The velocities of two
 links agree at
@@ -45,7 +45,8 @@ def find_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[
     Returns
     -------
     dict
-        Points in the mechanism's coordinates, shape S + (N,); NaN at toggles and where it cannot be assembled.
+        Points in the mechanism's coordinates, shape S + (N,); NaN at toggles and where the mechanism cannot be
+        assembled.
     """
     still = np.zeros_like(motion.input[1])
     spins: dict[str, Real] = {name: motion.angles[name][1] if name != GROUND else still for name in mechanism.links}

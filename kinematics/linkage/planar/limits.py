@@ -19,8 +19,8 @@ GRID_SIZE = 720
 """Number of inputs along the branch at which limit positions are searched."""
 
 END_OFFSETS = 4.0 ** -np.arange(17.0, 5.0, -1.0)
-"""Additional sample distances from the ends of a branch, as shares of it, from 6e-11 on: at a toggle angles go with the
-root of the distance, and rounding decides whether a position exists."""
+"""Distances of additional samples from the ends of a branch, as shares of its length, from 6e-11 on. Near a toggle
+angles go with the root of the distance, and rounding decides whether a position exists at the toggle itself."""
 
 TOGGLE_TOLERANCE = 1e-8
 """Distance (radians, or task units along a slide) below which two toggles are the same."""
@@ -32,7 +32,7 @@ def find_branches(mechanism: Mechanism) -> list[Branch]:
     Raises
     ------
     TopologyError
-        If neither its input nor another pair of links closes the mechanism by dyads, or constraints are redundant.
+        If neither the input nor another pair of links closes the mechanism by dyads, or if constraints are redundant.
     """
     if mechanism.redundant:
         raise TopologyError("the constraints are redundant; circuits are known only without redundant constraints")
@@ -89,8 +89,8 @@ def find_reference_branch(mechanism: Mechanism, branches: list[Branch]) -> Branc
 def find_cycle_from_reference(mechanism: Mechanism) -> float:
     """Find the input rotation after which a mechanism returns to its reference configuration.
 
-    With a triad it depends on the branch; if the reference's branch is unknown or not full, the result is that of
-    :func:`~.branches.cycle`.
+    With a triad it depends on the branch. If the reference's branch is unknown or not full, the result is that of
+    :func:`~.branches.compute_cycle`.
     """
     if mechanism.has_slide_input or not decompose(mechanism).left:
         return compute_cycle(mechanism)
@@ -115,9 +115,10 @@ def find_limit_positions(
 ) -> tuple[list[tuple[float, float] | None], list[tuple[float, float] | None]]:
     """Find the minimum and maximum angles of links, and positions of slides, on the reference's branch.
 
-    They occur at the ends of the branch, or where a rate vanishes, found as a root. The value at an end is extrapolated
-    from the nearest known position, at the distance d, by 2 d × rate: exact for a value that changes with the root of
-    the distance from a toggle, up to terms proportional to d, which are negligible where the value is smooth.
+    They occur at the ends of the branch, or where a rate vanishes, which is found as a root. A value at an end is
+    extrapolated from the nearest known position, at the distance d, by 2 d × rate. This is exact for a value that
+    changes with the root of the distance from a toggle, up to terms proportional to d, which are negligible where the
+    value is smooth.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
 def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: complex) -> Complex:
-    """Compute the motion of a point of a link, with its rates.
+    """Compute the position and the rates of a point of a link.
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: 
     link : str
         A link in motion.
     place : complex
-        The point in the link's frame: origin at the link's first joint, real axis towards its second; for the input
-        link from its pivot towards the other one.
+        The point in the link's frame: origin at the link's first joint, real axis towards its second. For the input
+        link the origin is its pivot, and the real axis points towards its other joint.
 
     Returns
     -------

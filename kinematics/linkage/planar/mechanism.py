@@ -36,7 +36,7 @@ class TopologyError(MechanismError, ValueError):
 
 
 class Slide(NamedTuple):
-    """``joint`` stays on the line through ``point`` at ``angle`` fixed in ``link``; reference, radians."""
+    """``joint`` stays on a line fixed in ``link``: through ``point`` at ``angle`` (radians) in the reference."""
 
     joint: str
     link: str
@@ -67,8 +67,8 @@ class Mechanism:
     input : str
         Name of a link that is pinned to the ground, or of the joint of a slide on the ground.
     turns : int
-        Full turns of the input link in the reference, added to its angle in −π to π given by its joints. With gears of
-        a non-integer ratio the same input angle after a turn is another configuration.
+        Full turns of the input link in the reference, added to the angle in −π to π that its joints give. With gears of
+        a non-integer ratio, the same input angle is another configuration after a turn.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ class Mechanism:
         return np.asarray(origin), np.asarray(np.where(size > 0.0, size, 1.0))
 
     def constraints(self, designs: NDArray[np.int64] | None = None) -> Constraints:
-        """All constraints of the designs, by their numbers (all, one after the other), in unit coordinates."""
+        """Return the constraints of the designs with the given numbers, by default of all, in unit coordinates."""
         origin, size = self.frame
 
         def take_designs(values: NDArray[Scalar]) -> NDArray[Scalar]:
@@ -183,6 +183,7 @@ class Mechanism:
         )
 
     def _check_mobility(self) -> None:
+        """Check that the mobility is one: by counting or, with redundant constraints, by rank and a trial move."""
         counted = self.gruebler_mobility
         object.__setattr__(self, "redundant", 1 - counted)
         if counted > 1:
@@ -211,6 +212,7 @@ class Mechanism:
         return sum(joint in listed for listed in self.links.values())
 
     def _check_names(self) -> None:
+        """Check that links, slides, gears and the input refer to existing joints and links."""
         if GROUND not in self.links:
             raise TopologyError(f"expected a link named {GROUND!r}")
         for name, listed in self.links.items():
@@ -240,6 +242,7 @@ class Mechanism:
             raise TopologyError(f"the input {self.input!r} is neither a link pinned to the ground nor a slide on it")
 
     def _check_slides(self) -> None:
+        """Check that each joint lies on its slide."""
         for slide in self.slides:
             offset = self.joints[slide.joint] - slide.point
             across = np.abs((offset * np.exp(-1j * slide.angle)).imag)
@@ -248,6 +251,7 @@ class Mechanism:
             require(f"distance of {slide.joint} from its slide", "zero", across, across <= SLIDE_TOLERANCE * reach)
 
     def _check_lengths(self) -> None:
+        """Check that the first two joints of each moving link are distinct."""
         anywhere = next(iter(self.joints.values()))
         size = np.max([np.abs(z - anywhere) for z in self.joints.values()], axis=0)
         for link, listed in self.links.items():

@@ -34,7 +34,7 @@ from kinematics.linkage.planar.program import build_program
 FULL_TURN = 2.0 * np.pi
 
 MIN_TRAVEL = 1e-9
-"""Travel of the true input along a curve, in units of the mechanism, below which it does not move."""
+"""Travel of the true input along a curve, in units of the mechanism, below which it counts as at rest."""
 
 MAX_LEAP = 0.5
 """Change of an angle between neighbouring samples, radians, above which they are too distant to be unwrapped."""
@@ -109,7 +109,7 @@ def _is_passing(curve: Curve, theta: float, choice: Integers) -> bool:
 
 
 class _TrueInput:
-    """True input along the curves of the other driver."""
+    """The true input as a function along the curves of the other driver."""
 
     def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
         self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves

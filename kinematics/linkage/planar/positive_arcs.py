@@ -4,7 +4,7 @@ Each function has a domain, a circle or a segment, and is evaluated with its rat
 function between neighbours agrees with the cubic through their values and rates, up to a small part of its change. Then
 no cell hides more than the cubic shows: a zero where the sign changes, an extreme where the rate points towards zero.
 Such an extreme is found as a root of the rate, and decides whether the function has two zeros there, none, or touches
-zero. Many functions are treated at once, as rows, because one evaluation costs hardly less than a hundred.
+zero. Many functions are treated at once, as rows, because one evaluation costs hardly less than a hundred of them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ MIN_CELL_WIDTH = 1e-7
 """Minimum width of a cell, as a share of the domain: next to a fold the input changes only by the square of it."""
 
 FIRST_SAMPLE = 0.37
-"""Position of the first sample in its cell: functions are often even about the ends, where rates may be infinite."""
+"""Position of the first sample in its cell, away from the ends: functions are often even about these, and their rates
+may be infinite there."""
 
 END_OFFSET = 1e-6
 """Distance of the outermost samples from the ends of a segment, as a share of it: the function may not exist there."""
@@ -34,8 +35,8 @@ TOUCH_TOLERANCE = 1e-12
 """Share of the function's maximum below which an extreme touches zero: a change point, to rounding."""
 
 ZERO_TOLERANCE = 1e-13
-"""Value below which a function that stays so at its first samples is zero everywhere; close to the ends, where roots of
-small differences are taken, rounding may be larger."""
+"""Value below which a function is zero everywhere if all of its first samples are that small. Close to the ends, where
+roots of small differences are taken, rounding may be larger."""
 
 NOISE_LEVEL = 1e-12
 """Share of a function's maximum below which a cell is not divided: its shape is rounding."""
@@ -142,7 +143,8 @@ def find_positive_arcs(function: Function, domains: Sequence[Domain]) -> list[li
 
 
 class _Boundary(NamedTuple):
-    """An end of arcs: its place, the number of its sign change (None if it touches), and whether the sign rises."""
+    """An end of arcs: its place, the number of its sign change (None if the function only touches zero), and whether
+    the sign rises."""
 
     at: float
     change: int | None

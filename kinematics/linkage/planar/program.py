@@ -154,6 +154,7 @@ class _Numbers:
         self.gives[self.link[link], : len(joints) + 1] = len(joints), *(self.joint[joint] for joint in joints)
 
     def drive(self) -> list[int]:
+        """Return the kernel's ``driver``, and mark the joints that the input determines as known."""
         mechanism = self.mechanism
         if not mechanism.has_slide_input:
             self._mark_known(mechanism.input)
@@ -163,6 +164,7 @@ class _Numbers:
         return [-1, self.joint[mechanism.input], slide]
 
     def row(self, step: Step, closing: int) -> tuple[int, ...]:
+        """Return the row of a closure, and mark the joints that it determines as known."""
         slide, other = -1, step.other
         if step.slide is not None:
             slide = next(n for n, s in enumerate(self.mechanism.slides) if s is step.slide)

@@ -2,7 +2,7 @@
 
 Chandrupatla's method (Adv. Eng. Software 28 (1997) 145, doi:10.1016/s0965-9978(96)00051-8): inverse quadratic
 interpolation through three points where it is safe, halving elsewhere; superlinear, and never worse than a few times
-bisection. Evaluations are arrays over all brackets, because one of them costs hardly less than a hundred.
+bisection. Evaluations are arrays over all brackets, because one evaluation costs hardly less than a hundred of them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ EPSILON, SMALLEST_NUMBER = float(np.finfo(float).eps), float(np.finfo(float).tin
 def find_roots(
     function: Callable[[Real], Real], low: Real, high: Real, at_low: Real | None = None, at_high: Real | None = None
 ) -> tuple[Real, Real]:
-    """Close brackets with a change of sign in each down to rounding.
+    """Shrink brackets, each with a change of sign, down to rounding.
 
     Parameters
     ----------

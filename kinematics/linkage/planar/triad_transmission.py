@@ -68,6 +68,7 @@ def compute_triad_sines(triad: Triad, joints: dict[str, Complex]) -> dict[str, R
 
 
 def _compute_sine(joints: dict[str, Complex], leg: Leg, *others: Leg) -> Real:
+    """Compute the sine of the transmission angle at a leg, given the two other legs."""
     pin = joints[leg.inner]
     with np.errstate(divide="ignore", invalid="ignore"):  # NaN where the mechanism cannot be assembled
         e1, e2 = (_compute_direction(joints, other) for other in others)

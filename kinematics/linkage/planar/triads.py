@@ -12,11 +12,11 @@ around φ for every θ' with
     η ω ≤ 1/2,    η ≥ ‖J⁻¹ k (z' − z)‖,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖ in the ball, of radius 2η;
 
 the ball is the same for all of them, so it is the continuation of φ. Near a toggle J⁻¹ grows along one direction, to
-which the rates of the links, t, converge. Hence the norm is ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on all
-links but the fastest: ε, the scale across t, is chosen to make the step as long as possible. With A = J⁻¹ C u in these
-coordinates the second derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the links'
-rotations; so ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. So a toggle is
-approached by steps that are a large part of the distance to it.
+which the rates of the links, t, converge. The norm is therefore ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on
+all links but the fastest: ε, the scale across t, is chosen to make the step as long as possible. With A = J⁻¹ C u in
+these coordinates the second derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the
+links' rotations. Therefore ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. A
+toggle is approached by steps that are a large part of the distance to it.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class Track:
 
     @property
     def first_step(self) -> float:
-        """Certified step at the reference, radians; below ``STALLED`` the reference is a toggle."""
+        """Certified step at the reference, radians; below :data:`MIN_CERTIFIED_STEP` the reference is a toggle."""
         return self._sides[1.0].first_step
 
     def find_rotations(self, rotation: Real) -> Real:
@@ -185,7 +185,7 @@ class Track:
 
 
 class _Side:
-    """Nodes of a track in one sense of rotation, in which the input counts positive."""
+    """Nodes of a track in one sense of rotation, in which the input is counted as positive."""
 
     def __init__(self, loops: Loops, sign: float) -> None:
         self._equations = loops.coefficients, loops.by_input, loops.fixed
@@ -205,6 +205,7 @@ class _Side:
         return self._ended and float(self._nodes[-1] + self._reach[-1]) < rotation
 
     def find_rotations(self, rotation: Real) -> Real:
+        """Find rotations of the unknown links for input rotations of this sense; NaN if unreachable."""
         ahead = self._sign * rotation
         self._extend(float(ahead.max()))
         node = np.searchsorted(self._nodes, ahead, side="right") - 1
@@ -213,6 +214,7 @@ class _Side:
         return found.T
 
     def _extend(self, target: float) -> None:
+        """Add nodes until the certified steps reach the target or the track ends."""
         while not self._ended and self._nodes[-1] + self._reach[-1] < target:
             if len(self._nodes) > MAX_NODES:
                 self._ended = self.given_up = True
@@ -252,8 +254,9 @@ def _follow_nodes(
 ) -> tuple[int, bool, bool]:
     """Add nodes after the known first one until the target is passed.
 
-    Returns the number of nodes, whether the track ends there (at a toggle or because Newton failed), and whether Newton
-    failed."""
+    Returns the number of nodes, whether the track ends there (at a toggle or because Newton's method failed), and
+    whether Newton's method failed.
+    """
     links = c.shape[1]
     phi, value = angles[0].copy(), np.empty(links)
     inverse, slope = np.empty((links, links)), np.empty(links)

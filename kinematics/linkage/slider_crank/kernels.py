@@ -1,8 +1,8 @@
-"""Compiled sweeps of the slider-crank over designs × crank angles; its formulas are those of :mod:`slider_crank`.
+"""Compiled sweeps of the slider-crank over designs × crank angles, by the formulas of :mod:`closed_form`.
 
-``pivots`` are O2, a point of the slide (of it only the distance from O2 along and across the slide is used) and the
-coupler point in its link's frame, ``lengths`` are a, b and the angle of the slide. In the frame of the slide, x along
-it, the pin B has no motion across:
+``pivots`` are O2, a point of the slide (only its distances from O2 along and across the slide are used) and the coupler
+point in its link's frame. ``lengths`` are a, b and the angle of the slide. In the frame of the slide, x along it, the
+pin B has no motion across:
 
     Δ = u_x                       d'   = −ω2 k_y − ω3 u_y
     Δ ω3 = −ω2 k_x                d''  = −α2 k_y − ω2² k_x − α3 u_y − ω3² u_x

@@ -1,6 +1,6 @@
 """Branches, circuits and transmission angle of one slider-crank over a range of crank angles, in closed form.
 
-Everything depends on the height k_y = a sin(θ − φ) of the pin A over the slide's direction (:mod:`slider_crank`). The
+All results depend on the height k_y = a sin(θ − φ) of the pin A over the slide's direction (:mod:`closed_form`). The
 coupler reaches the slide where |c − k_y| ≤ b, and is normal to it (a toggle) at equality. Its transmission angle,
 against the normal of the slide, has the sine √(1 − ((c − k_y)/b)²) (Norton, Sec. 4.10). Over a range of angles the
 extremes of the height occur at the ends, or where the crank is normal to the slide.
@@ -33,7 +33,10 @@ def stays_on_branch(linkage: SliderCrank, start: float, end: float) -> bool:
 
 
 def find_min_transmission_angle(linkage: SliderCrank, start: float, end: float) -> float:
-    """Find the minimum transmission angle while the crank turns from ``start`` to ``end``, radians; 0 if it cannot."""
+    """Find the minimum transmission angle while the crank turns from ``start`` to ``end``, radians.
+
+    It is 0 if the crank meets a toggle on the way.
+    """
     low, high = find_height_range(linkage, start, end)
     b, c = float(linkage.coupler), float(linkage.offset)
     across = max(abs(c - low), abs(c - high))

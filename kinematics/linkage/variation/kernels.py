@@ -1,6 +1,6 @@
 """Compiled motion of variants of one linkage: each driven to its targets, and checked to stay on its branch.
 
-*Closest input.* Near the nominal input the misses are e + v τ (distance) and ε + ω τ (angle), in their units. Their
+*Closest input.* Near the nominal input the deviations are e + v τ (distance) and ε + ω τ (angle), in their units. Their
 squares are two parabolas in τ, whose sum or maximum is minimal at a τ in closed form (:func:`find_minimizing_step`).
 Steps are taken until they are small, and halved if the objective does not decrease: the Gauss-Newton method in one
 unknown. The crank is rotated by (1 + i τ/2)/(1 − i τ/2), which needs no trigonometric functions.
@@ -44,8 +44,8 @@ INITIAL_REACH = 1e-6
 def find_minimizing_step(greatest: bool, a1: float, b1: float, c1: float, a2: float, b2: float, c2: float) -> float:
     """Find τ that minimizes the sum, or the maximum, of a1 τ² + 2 b1 τ + c1 and a2 τ² + 2 b2 τ + c2.
 
-    Both are squares, hence nonnegative. The maximum is minimal at the vertex of one parabola if that one is the larger
-    there, or else where both cross between their vertices.
+    Both are squares and therefore nonnegative. The maximum is minimal at the vertex of one parabola if that parabola is
+    the larger there, otherwise where both cross between their vertices.
     """
     if a1 + a2 == 0.0:
         return 0.0
@@ -168,9 +168,9 @@ def measure_deviations(
 
 @njit(**OPTIONS)
 def measure_shares(drive: Drive, variants: Real, targets: Real, nominal: Real, settings: Real, share: Real) -> None:
-    """Fill the largest share of a unit that a variant uses at a target into ``share`` (V,); infinite if invalid.
+    """Fill into ``share`` (V,) the largest share of a unit that each variant uses at any target; infinite if invalid.
 
-    A variant with more than 1 at one target is not driven to the others.
+    A variant that exceeds 1 at one target is not driven to the others.
     """
     table = targets.copy()
     for i in range(len(variants)):

@@ -21,7 +21,7 @@ from kinematics.compiling import njit
 from kinematics.linkage.kernels import OPTIONS, TOGGLE_SLACK, compute_direction
 
 POSES, POINTS, OUTPUTS = 0, 1, 2
-"""Sorts of targets: poses of the coupler's body, positions of P, or positions of the output."""
+"""Kinds of targets: poses of the coupler's body, positions of P, or positions of the output."""
 
 
 class Drive(NamedTuple):
@@ -30,13 +30,14 @@ class Drive(NamedTuple):
     Attributes
     ----------
     sort : int
-        Sort of the targets.
+        Kind of the targets.
     slides : bool
         Whether the linkage is a slider-crank.
     ex, ey : float
-        Direction of its slide.
+        Direction of the slide of a slider-crank.
     adjusted, greatest : bool
-        Whether the input is adjusted at each target, and whether to minimize the larger miss, not the sum of squares.
+        Whether the input is adjusted at each target, and whether the larger miss is minimized instead of the sum of
+        squares.
     per_length, per_angle : float
         Inverses of the units of distance and angle.
     before, after : float

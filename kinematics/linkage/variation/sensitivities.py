@@ -40,17 +40,17 @@ class Sensitivities(NamedTuple):
     inputs : float, shape (t,)
         Closest inputs of the nominal linkage, radians.
     offsets : float, shape (t, 3)
-        Its deviations x, y, angle there (see :func:`measure_deviations`).
+        Deviations x, y, angle at these inputs (see :func:`measure_deviations`).
     fixed : float, shape (t, 3, n)
-        Their derivatives at these inputs.
+        Derivatives of the deviations at fixed inputs.
     motion : float, shape (t, 3)
-        Their derivatives to the input.
+        Derivatives of the deviations by the input.
     rates : float, shape (t, 3, n)
-        Their derivatives if the input is adjusted; the same as ``fixed`` if not.
+        Derivatives of the deviations with the input adjusted; the same as ``fixed`` if it is not adjusted.
     least : float or None
         Minimum transmission angle over the used range, radians; None without a range.
     least_rates : float, shape (n,)
-        Its derivatives; zeros without a range. If the minimum occurs twice, those of the first.
+        Derivatives of that angle; zeros without a range. If the minimum occurs twice, those at the first place.
     """
 
     inputs: Real
@@ -77,9 +77,9 @@ class _Loop(NamedTuple):
     db: Complex
     dp: Complex
     dturn: Real
-    """∂²φ/∂θ of each."""
+    """Derivatives of ∂φ/∂θ."""
     dv: Complex
-    """∂²P/∂θ of each."""
+    """Derivatives of ∂P/∂θ."""
 
 
 def _dot(a: Complex, b: Complex | np.complex128) -> Real:
@@ -206,7 +206,7 @@ def _find_transmission(task: Task, nominal: Real, inputs: Real, following: Real)
         return None, np.zeros(len(nominal))
     margins, first, last = task.margins, int(inputs.argmin()), int(inputs.argmax())
     low, high = float(inputs[first] - margins[0]), float(inputs[last] + margins[1])
-    if not math.isfinite(high - low):  # a target that is nowhere near has no input
+    if not math.isfinite(high - low):  # a target that the linkage cannot approach has no input
         return None, np.zeros(len(nominal))
     if task.slide_angle is not None:
         still = task.slide_angle + 0.5 * math.pi
@@ -221,8 +221,7 @@ def _find_transmission(task: Task, nominal: Real, inputs: Real, following: Real)
         at = _differentiate_loop(task, nominal, places, signs)
         between = np.angle(at.normal / at.u)
         change = _differentiate_angle(at.normal, at.dn) - _differentiate_angle(at.u, at.du)
-    # The acute angle between two lines.
-    # Lines have no direction, so angles count modulo π.
+    # The acute angle between two lines: lines have no direction, so their angles are taken modulo π.
     folded = np.remainder(between, math.pi)
     acute = np.minimum(folded, math.pi - folded)
     k = int(np.where(np.isfinite(acute), acute, 0.0).argmin())

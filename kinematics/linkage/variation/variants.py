@@ -1,4 +1,4 @@
-"""The task of one linkage, and variants of the linkage driven to it."""
+"""The task of one linkage, and variants of the linkage driven to the targets of that task."""
 
 from __future__ import annotations
 
@@ -51,6 +51,10 @@ class Task:
         Units of distance, and of angle in radians, for the comparison of misses; infinite: ignored.
     greatest : bool
         Whether the closest input minimizes the larger of distance and angle, or else the sum of their squares.
+    on_ground : pair of bool
+        Whether the angles of input and output are counted from the ground line, so that they rotate with it.
+    ground_angle : float
+        Nominal direction of the ground line, radians.
     """
 
     sort: Sort
@@ -145,7 +149,7 @@ class Task:
 
     @property
     def _with_ground(self) -> Real:
-        """Settings in the kernels' layout per radian of rotation of the ground."""
+        """Change of the settings, in the kernels' layout, per radian of rotation of the ground line."""
         return np.array([1.0, -1.0]) * self.on_ground
 
     def build_settings(self, rows: Real, given: ArrayLike | None = None) -> Real:
@@ -246,7 +250,7 @@ def measure_squares(task: Task, variants: ArrayLike, most: float = math.inf, set
     variants, settings
         As for :func:`measure_deviations`.
     most : float
-        Sums that exceed it are not completed.
+        Limit above which a sum is not completed.
 
     Returns
     -------

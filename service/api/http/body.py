@@ -149,16 +149,17 @@ def _refuse_many_values(body: bytes) -> Refusal:
 
 
 def _find_depth_faults(body: bytes) -> list[tuple[str, str]]:
-    """Find the place where an unparsable body is nested too deeply; an empty list if the fault is another one."""
+    """Return the fault of an unparsable body that is nested too deeply, with its place; empty for any other fault."""
     where = locate_excess(body, len(body), MAX_DEPTH)
     return [(where, f"This is nested more than {MAX_DEPTH} levels deep.")] if where else []
 
 
 def _has_more_values_than(body: bytes, limit: int) -> bool:
-    """Return whether the punctuation alone shows it: a comma separates two values, and each list or object is a value.
+    """Return whether the punctuation alone shows that a body has more than ``limit`` values.
 
-    Building and freeing half a million lists takes a third of a second; counting their brackets takes a millisecond. A
-    body that passes has at most twice the limit.
+    A comma separates two values, and each list or object is a value. This quick test precedes parsing: building and
+    freeing half a million lists takes a third of a second, counting their brackets a millisecond. A body that passes
+    has at most twice the limit.
     """
     if len(body) <= limit:
         return False

@@ -35,7 +35,7 @@ async def respond_with_analysis(
     """
     try:
         with measure_span("analysis"):
-            # Large answers are compressed where they are computed; the event loop would stand still meanwhile.
+            # Large answers are compressed by the process that computes them; here this would block the event loop.
             if is_gzip_accepted(request):
                 work, args = compute_packed, (work, *args)
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)

@@ -16,7 +16,7 @@ def format_tag(version: int | str) -> str:
 def is_current_tag(headers: Iterable[str], current: str) -> bool:
     """Return whether ``If-None-Match`` names the current tag or ``*``. Weak tags compare like strong ones.
 
-    >>> matches(['"6", W/"7"'], '"7"'), matches(['"7"'], 'W/"7"')
+    >>> is_current_tag(['"6", W/"7"'], '"7"'), is_current_tag(['"7"'], 'W/"7"')
     (True, True)
     """
     opaque = current.removeprefix("W/")

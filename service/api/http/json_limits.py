@@ -1,4 +1,4 @@
-"""Limits of a JSON text: finds the place where it has too many values or is nested too deeply."""
+"""Search for the place at which a JSON text has too many values or is nested too deeply."""
 
 from __future__ import annotations
 

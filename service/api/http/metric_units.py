@@ -1,4 +1,4 @@
-"""Dimensions of the numbers of a design, by name, from which a client can show units."""
+"""Dimensions of the numbers in a design, by name, from which a client can determine their units."""
 
 from __future__ import annotations
 

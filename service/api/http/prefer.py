@@ -12,7 +12,7 @@ _WAIT_PATTERN = re.compile(
 )
 _COMMA_OUTSIDE_QUOTES = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')
 _MAX_LENGTH = 1000
-"""Number of characters of the header that are read: the search for commas takes time by the square of the length."""
+"""Maximum number of characters of the header that are read, because the search for commas takes quadratic time."""
 
 
 def parse_wait_seconds(headers: Iterable[str], longest: int) -> int:
@@ -20,7 +20,7 @@ def parse_wait_seconds(headers: Iterable[str], longest: int) -> int:
 
     A preference must never make a request fail, so invalid ones are ignored. The first valid one counts.
 
-    >>> wait_seconds(["respond-async, wait=5"], longest=30)
+    >>> parse_wait_seconds(["respond-async, wait=5"], longest=30)
     5
     """
     for preference in _COMMA_OUTSIDE_QUOTES.split(",".join(headers)[:_MAX_LENGTH]):

@@ -147,12 +147,12 @@ def refuse_compiling() -> Refusal:
 
 
 def describe_responses(**described: str) -> dict[int | str, JsonObject]:
-    """Return the error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
+    """Return the error responses of an endpoint for OpenAPI: ``describe_responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
     again = {"Retry-After": {"description": "Seconds to wait before the next attempt.", "schema": {"type": "integer"}}}
     return {
         int(name[1:]): {"description": text, "content": content}
-        # Only these two errors pass by themselves.
+        # Only these two errors are temporary, so only they have the header `Retry-After`.
         | ({"headers": again} if name in ("e429", "e503") else {})
         for name, text in described.items()
     }

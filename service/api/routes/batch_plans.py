@@ -23,12 +23,12 @@ MAX_EXAMINED = 100
 """Number of evenly spread samples that are checked; at least one of them must be a valid problem."""
 
 MAX_TRIED_BYTES = 4_000_000
-"""Total size of the statements tried, bytes of JSON, about a second of work. That covers all values of a plan with a
-problem of usual size; with a larger one, evenly spread values are tried, at least :data:`MAX_EXAMINED`."""
+"""Maximum total size of the problems that are tried, bytes of JSON; about a second of work. For a problem of usual size
+that covers all values of a plan. For a larger one evenly spread values are tried, at least :data:`MAX_EXAMINED`."""
 
 CHECK_TIMEOUT_S = 1.0
-"""Processor time after which no further values or samples are checked, seconds: statements with very many faults take
-longer than their size suggests."""
+"""Processor time after which no further values or samples are checked, seconds. The size alone does not bound the time,
+because problems with very many faults take longer to check."""
 
 MAX_TABLE_BYTES = 16 << 20
 """Maximum total size of the values of all samples, bytes of JSON, since the table repeats them in each row."""
@@ -109,8 +109,8 @@ def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
 
 
 def _find_problem_faults(kind: str, plan: Plan) -> list[tuple[str, str]]:
-    """Return the faults of the problem that do not depend on the varied fields, by the first and the last sample."""
-    # Two samples suffice: a fault that both have outside of the varied fields is taken as one of the problem.
+    """Return the faults of the problem that do not depend on the varied fields, found in the first and last samples."""
+    # Two samples suffice: a fault outside the varied fields that both samples have is attributed to the problem.
     found: Faults = []
     for number in (0, plan.total - 1):
         before = found
@@ -141,7 +141,7 @@ def _find_field_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
         if way == ["kind"]:
             yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
         for other in ways[:k]:
-            # Of two fields one inside the other, the order would decide which values hold.
+            # If one field lies inside the other, the result would depend on the order in which they are set.
             if way[: len(other)] == other or other[: len(way)] == way:
                 yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
 
@@ -244,7 +244,10 @@ def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) 
 
 
 def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[object]]]:
-    """Yield samples that cover each value: the places of the values new in it, by field, and all its values."""
+    """Yield samples that together contain every value of every field.
+
+    Each sample is given by the indices of the values that it is meant to test, by field, and by all its values.
+    """
     if not plan.grid:
         for number in range(plan.total):
             yield {k: _get_place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
@@ -256,12 +259,12 @@ def _iterate_trials(plan: Plan) -> Iterable[tuple[dict[int, int], list[object]]]
 
 
 def _get_place(values: Values, number: int) -> int:
-    """Return the place of a sample's value among the given ones."""
+    """Return the index of a sample's value among the values given for the field."""
     return values.places[number] if isinstance(values, PickedValues) else number
 
 
 def _estimate_cost(kind: str, plan: Plan, until: float) -> Cost:
-    """Estimate the cost of a problem of the batch: the highest of the samples checked within the time, at least one."""
+    """Estimate the cost of a problem: the maximum over the samples checked within the time limit, at least one."""
     refused: Faults | None = None
     brief: list[bool] = []
     for number in _sample_numbers(plan.total, MAX_EXAMINED):
@@ -279,9 +282,10 @@ def _estimate_cost(kind: str, plan: Plan, until: float) -> Cost:
 
 
 def _sample_numbers(total: int, most: int) -> Iterator[int]:
-    """Yield at most ``most`` numbers below the total, evenly spread, in an order whose beginnings are even, too."""
+    """Yield at most ``most`` evenly spread numbers below ``total``, such that every prefix is evenly spread, too."""
     count = min(total, most)
-    # Steps near the golden section of the count, and coprime to it, spread every beginning of the order evenly.
+    # A step near the golden section of the count spreads every prefix evenly. If it is coprime to the count, the order
+    # contains each number once.
     step = next(step for step in range(max(1, round(count * 0.618)), count + 1) if math.gcd(step, count) == 1)
     for n in range(count):
         yield n * step % count * total // count
@@ -295,7 +299,7 @@ def _refuse_all_samples(plan: Plan, faults: Faults) -> Refusal:
 
 
 def _locate_fault(plan: Plan, path: str) -> str:
-    """Locate a fault of all samples: at the varied field whose path it lies on, else in the problem."""
+    """Return the place of a fault of all samples: a varied field below the faulty object, otherwise the problem."""
     on_the_way = (k for k, field in enumerate(plan.fields) if path and field.startswith(f"{path}/"))
     k = next(on_the_way, None)
     return f"/problem{path}" if k is None else f"/vary/{k}/field"

@@ -1,7 +1,7 @@
 """``/v1/jobs/{id}/events``: the progress of a job as server-sent events.
 
-An event's id consists of the job's revision and state, ``7-running``. To resume, a client needs no more: the newest
-state is sent if the client does not have it, and events missed in between do not matter any more.
+An event's id consists of the job's revision and state, for example ``7-running``. That is all a client needs to resume:
+the newest state is sent if the client does not have it, and events missed in between are obsolete.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ def _format_event(
     job = follower.job
     if job is None:
         return format_sse_event(event="removed", data_str="{}")
-    # The client may be ahead of the last look of this server at the store.
+    # The client may have received a newer state from another server than the one that this server read last.
     if seen is not None and job.revision <= seen[0]:
         return None
     state = seen is None or seen[1] != job.status

@@ -216,7 +216,7 @@ def _build_arguments(job: SolvedJob, number: int, query: JsonObject) -> JsonObje
 
 
 class _FileOrder(NamedTuple):
-    """Number of the design in the path, options, format, and the part if the file is that of one part."""
+    """Order for a file: the design number in the path, the options, the format, and the part for a single-part file."""
 
     number: str
     query: PartsQuery

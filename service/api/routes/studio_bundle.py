@@ -1,7 +1,7 @@
 """Bundle the modules of the page, so that a browser sends one request and not one for each module.
 
 Each module becomes a function that is called at once and returns the exports of the module. Imports become references
-to what the modules before it returned. In ``canvas/grid.js``::
+to the values returned by the functions of earlier modules. In ``canvas/grid.js``::
 
     import { el } from "../core/dom.js";              const $canvas$grid = (() => {
     export function grid(view) { ... }       becomes  const { el } = $core$dom;
@@ -42,7 +42,7 @@ class BundleError(Exception):
 
 
 def build_bundles(modules: Mapping[str, str], first: str) -> dict[str, str]:
-    """Bundle the module ``first`` with its imports, and likewise every module that these import dynamically.
+    """Bundle the module ``first`` with its imports, and likewise every module that is imported dynamically.
 
     Parameters
     ----------

@@ -25,14 +25,15 @@ POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""No other host and nothing inline; ``blob:`` allows drawings that the page fetched with its key."""
+"""Content security policy of the page: no other hosts and no inline code. ``blob:`` allows drawings that the page has
+fetched with its key."""
 
 _HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
-# Browsers may store the answer, but must compare its tag with the server every time.
+# Browsers may store the file, but must revalidate its entity tag with the server each time.
 _REVALIDATE = "no-cache"
 _IMMUTABLE = "public, max-age=31536000, immutable"
 """For requests that name the version: the content at such an address never changes."""

@@ -37,7 +37,9 @@ class BatchDesk:
     async def accept(
         self, *, tenant: str, kind: str, label: str | None, plan: Plan, cost: Cost, repeatable: Repeatable | None
     ) -> BatchRow:
-        """Store a batch and submit it. A repeated request with the same key returns the batch it created first.
+        """Store a batch and submit it.
+
+        A repeated request with the same key returns the batch that the first request created.
 
         Raises
         ------

@@ -27,7 +27,8 @@ class Plan:
     fields : sequence of str
         JSON pointers into the problem, one for each varied field.
     values : sequence of sequences
-        The values of each field: all combinations of them in a grid, otherwise one of each for every sample.
+        The values of each field. In a grid the samples are all combinations of them. Otherwise each field has one value
+        for every sample.
     grid : bool
         Whether the samples are a grid, in which the last field varies fastest.
     metrics : sequence of str

@@ -24,7 +24,7 @@ Varied = Values | Span
 def sample_evenly(begin: float, end: float, count: int) -> Sequence[float]:
     """Return ``count`` evenly spaced numbers including both ends; integers if all of them are whole.
 
-    >>> evenly(10, 30, 3), evenly(0, 1, 3)
+    >>> sample_evenly(10, 30, 3), sample_evenly(0, 1, 3)
     ([10, 20, 30], array('d', [0.0, 0.5, 1.0]))
     """
     if count == 1:
@@ -38,7 +38,7 @@ def sample_evenly(begin: float, end: float, count: int) -> Sequence[float]:
 
 
 def sample_latin_hypercube(varied: Sequence[Varied], samples: int, seed: int) -> list[Values]:
-    """Draw values of each field such that each of ``samples`` equal parts of its range, or of its list, has one.
+    """Draw values of each field, one from each of ``samples`` equal parts of its range or of its list.
 
     Uses SciPy's Latin hypercube (McKay, Beckman & Conover 1979, DOI 10.2307/1268522) with the given seed.
     """

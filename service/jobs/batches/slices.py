@@ -1,8 +1,8 @@
 """The work on a share of a batch: a worker solves a slice of it and stores the slice in one transaction.
 
-A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, the earlier of the two. That is soon enough
-to free the worker for the next job in turn, and late enough to make claiming and storing, which take as long as a quick
-problem, a small part of the work.
+A slice ends after :data:`SLICE_S` seconds or :data:`MAX_SAMPLES` samples, whichever comes first. That is short enough
+to free the worker for the next job in turn. It is long enough that claiming and storing, which take as long as a quick
+problem, are a small part of the work.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy.
 """
@@ -103,7 +103,7 @@ class SliceSolver:
         except SolverStopped:
             return "stopped"
         except MemoryError:
-            # The samples before this one are sound and are stored; only the one at work has failed.
+            # The samples before this one are valid and are stored; only the sample being solved has failed.
             at = todo[len(new)]
             new.append(_build_failure(batch, at, format_now(), self._out_of_memory))
             outcome = "out of memory"
@@ -226,7 +226,7 @@ class SliceSolver:
             )
         except MemoryError:
             raise
-        except Exception:  # the boundary of the solvers: a defect of theirs ends this sample only
+        except Exception:  # the boundary of the solvers: a defect in them ends this sample only
             log.exception("the solver raised", batch=batch.id, sample=prepared.number)
             return _build_failure(batch, prepared.number, began, faults.INTERNAL_ERROR)
 

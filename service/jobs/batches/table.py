@@ -143,7 +143,7 @@ _BLOCK_ROWS = 256
 
 
 def _as_good(rows: Rows, others: Rows) -> NDArray[np.bool_]:
-    """Return for each row (n) whether each other row (m) is as good in every column; shape (n, m)."""
+    """Return whether ``others[j]`` is as good as ``rows[i]`` in every column, at [i, j]; shape (n, m)."""
     as_good = np.ones((len(rows), len(others)), bool)
     for row, other in zip(rows.T, others.T, strict=True):
         as_good &= other <= row[:, None]

@@ -1,8 +1,8 @@
 """Leases: which attempts and worker hosts are alive.
 
-Several servers and worker hosts may share a store. Words: a *claim* is the mark of one attempt, chosen by the executor.
-While the attempt runs, its *lease* is renewed; a job with an expired lease counts as abandoned. Leases use the clock of
-the database, in the column ``due_at``.
+Several servers and worker hosts may share a store. A *claim* is the mark of one attempt, chosen by the executor. While
+the attempt runs, its *lease* is renewed, and a job with an expired lease counts as abandoned. The column ``due_at`` has
+the expiry of a lease by the clock of the database.
 """
 
 from __future__ import annotations

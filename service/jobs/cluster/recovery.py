@@ -49,7 +49,8 @@ class Recovery(threading.Thread):
             except SQLAlchemyError as error:
                 if not is_unreachable(error):
                     log.exception("jobs could not be recovered")
-                # No host could renew its leases meanwhile, so expired ones prove nothing until all have had time to.
+                # No host could renew its leases meanwhile, so expired leases prove nothing until every host has had
+                # time to renew its own.
                 self._trusted_from = time.monotonic() + LEASE_S
             except Exception:  # the next round must come after any error
                 log.exception("jobs could not be recovered")

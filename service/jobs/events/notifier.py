@@ -46,9 +46,10 @@ class ChangeNotifier:
 
     @contextmanager
     def watch_all(self, callback: Callable[[str | None], None]) -> Iterator[None]:
-        """Call ``callback`` with the id of every job that changes, and with None if any job may have, as at the end.
+        """Call ``callback`` with the id of each job that changes.
 
-        For use on the event loop only.
+        It is called with None if any job may have changed, and when the notifier is closed. For use on the event loop
+        only.
         """
         self._callbacks.add(callback)
         try:

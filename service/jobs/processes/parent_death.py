@@ -1,4 +1,4 @@
-"""No orphan processes: a worker ends with its server, even if the server is killed."""
+"""Prevention of orphan processes: a worker ends with its server, even if the server is killed."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def bind_to_parent_at_start() -> None:
     is killed meanwhile would leave the worker behind for that time. If the server was killed even before this line, the
     worker already has another parent; so it takes the parent's id from the environment and not from the system.
     """
-    # The mark that multiprocessing itself goes by while it imports the main module again.
+    # Multiprocessing itself sets this mark in a spawned process while it imports the main module again.
     if sys.platform == "linux" and getattr(multiprocessing.current_process(), "_inheriting", False):
         bind_to_parent(int(os.environ.pop(_PARENT, os.getppid())))
 

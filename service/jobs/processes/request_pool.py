@@ -3,7 +3,7 @@
 Equal requests share one call. Tenants take turns, and a call that turns out to be long cannot delay short ones
 (:mod:`service.jobs.processes.request_queue`).
 
-Words: a *pool* has *hands*, which are threads; a hand has a *process* that executes *calls*.
+A *pool* has *hands*, which are threads. Each hand has a *process* that executes *calls*.
 """
 
 from __future__ import annotations

@@ -111,6 +111,6 @@ def _report_compilations(pipe: Connection) -> None:
             pipe.send(COMPILING_MESSAGE)
 
         def on_end(self, event: event.Event) -> None:
-            """Do nothing: the end of the call is message enough."""
+            """Do nothing: the outcome of the call also marks the end of its compilations."""
 
     event.register("numba:compile", Reporter())

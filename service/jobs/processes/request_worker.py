@@ -53,7 +53,7 @@ class ClientGone(Exception):
 
 
 class GivenUp(Exception):
-    """The call exceeded its limit ``of`` time or memory."""
+    """The call exceeded its limit of time or memory; ``of`` is the name of that limit."""
 
     def __init__(self, of: Limit) -> None:
         super().__init__(f"the call exceeds its limit of {of}")

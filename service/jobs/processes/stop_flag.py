@@ -1,8 +1,9 @@
-"""State shared by a lane and its worker: the time the solver has been at work, and the request to stop.
+"""State shared by a lane and its worker: the time that the solver has been running, and the request to stop.
 
-The two processes share a few bytes of memory. A worker also waits for the store, which may be unavailable for any time;
-only the solver's time counts towards the time limit of a job. A solver stops at its first progress report after the
-request, and its worker lives on. That is nearly always soon enough, whereas a new worker takes seconds to start.
+The two processes share a few bytes of memory. A worker also waits for the store, which may be unavailable for any
+length of time, so only the solver's time counts towards the time limit of a job. After a request to stop, a solver
+stops at its next progress report, and its worker stays alive. That is nearly always soon enough, and it avoids the
+start of a new worker, which takes seconds.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ _NO_SAMPLE = -1
 
 
 class SolverStopped(BaseException):
-    """A stop was requested. Derived from BaseException, so that no solver catches it as an error of its own."""
+    """A stop was requested. It is derived from BaseException, so that no solver catches it as an error."""
 
 
 class Solving:

@@ -41,7 +41,7 @@ class FinishedJobs:
         return job
 
     def keep(self, job: JobRow, removals: int) -> None:
-        """Cache a job if it is finished and no job was removed since it was read: that might have been this one."""
+        """Cache a finished job, unless a job was removed since it was read: that might have been this job."""
         size = _size(job)
         if not job.status.finished or removals != self._removals or size * _MIN_CAPACITY_RATIO > self._capacity:
             return

@@ -9,7 +9,7 @@ stop the pool, which kills the worker, and start another.
 A cancelled job is first given time to stop by itself (:mod:`service.jobs.processes.stop_flag`), since a new worker
 takes seconds to start.
 
-Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when its worker has finished starting.
+A *lane* runs *jobs* in its *worker*, which is a process. A lane is *ready* when its worker has finished starting.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ START_TIMEOUT_S = 300.0
 """Time limit for the start of a worker, seconds. The first start may compile all kernels, which takes a minute."""
 
 MAX_CANCELLED = 1000
-"""Number of cancelled jobs that a lane remembers; a job that it is just receiving is among the last few."""
+"""Number of cancelled jobs that a lane remembers. The job that it is about to receive is one of the last few."""
 
 GRACE_S = 0.5
 """Time for a cancelled job to stop by itself before its worker is killed, seconds."""

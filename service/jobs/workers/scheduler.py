@@ -31,8 +31,8 @@ ASK_PERIOD_S = 1.0
 """Period at which a free lane asks for a job by itself, seconds. In between, lanes check their workers."""
 
 PATIENCE_S = 10.0
-"""Idle time after which a lane takes a long job although no other worker is ready for short ones, seconds: none can be
-started."""
+"""Idle time after which a lane takes a long job although no other worker is ready for short ones, seconds. After this
+time it is assumed that no other worker can be started."""
 
 SHORT_S = 2.0
 """Time after which a job estimated as short counts as long, seconds."""

@@ -17,10 +17,10 @@ HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes
 
 
 def write_bill(listed: Sequence[Item]) -> str:
-    """Write the items as a table with lengths in millimetres; for round items the length is axial, the width the
-    diameter.
+    """Write the items as a CSV table with lengths in millimetres.
 
-    The mass of one item is given if the answer contains the density, in the answer's unit of mass.
+    The length of a round item is its axial length, and its width is its diameter. The mass of one item is given, in the
+    answer's unit of mass, if the answer contains the density.
     """
     return write_table(HEADER, [list_row(item) for item in listed])
 

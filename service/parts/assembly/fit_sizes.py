@@ -1,7 +1,7 @@
 """Search for sizes at which the parts of a mechanism fit: those of the request, or the thickest pins that fit.
 
-The assembly depends on the type of mechanism; requesting, checking, trying and refusing sizes does not. A subclass of
-:class:`Fitting` builds an assembly in given sizes.
+Only the assembly depends on the type of mechanism. The handling of sizes, from the request to a possible refusal, is
+the same for all types. A subclass of :class:`Fitting` builds an assembly in given sizes.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Fitting(ABC):
     Raises
     ------
     NotMade
-        The mechanism exceeds the maximum size of parts.
+        If the mechanism exceeds the maximum size of parts.
     """
 
     def __init__(self, query: PartsQuery, unit: float, size: float) -> None:
@@ -78,7 +78,7 @@ class Fitting(ABC):
         Raises
         ------
         NotMade
-            The parts do not fit.
+            If the parts do not fit.
         """
         if self._query.width is None and self._query.pin is None:
             return self.find_default()
@@ -195,8 +195,9 @@ class Fitting(ABC):
     # Refusals
 
     def make_refusal(self, sizes: Sizes, reason: str, path: str = "") -> NotMade:
-        """Return the error for parts that do not fit, with the minimum scale at which they do and the maximum width at
-        this one.
+        """Return the error for parts that do not fit.
+
+        Its message has the minimum scale at which they fit, and the maximum width at the requested scale.
         """
         scale, unit = self._query.scale, self._unit
         path = path or ("/query/pin" if self._query.width is None else "/query/width")

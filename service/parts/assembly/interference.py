@@ -28,10 +28,10 @@ CHECK_COUNT = 144
 """Number of inputs at which parts are compared."""
 
 CROSSING_STRIDE = 3
-"""Parts with crossing axes are compared at every n-th input."""
+"""Stride of the inputs at which parts with crossing axes are compared; that comparison is the slowest."""
 
 ROUNDING_SHARE = 1e-9
-"""Apparent overlap of touching faces due to rounding, as a share of the assembly's size."""
+"""Maximum apparent overlap of touching faces due to rounding, as a share of the assembly's size."""
 
 MAX_SAG = 5e-3
 """Maximum distance of polygons from arcs, millimetres; less than the clearances of large bores."""
@@ -174,7 +174,7 @@ class _MovedRegions:
         return self._placed[one].frame is self._placed[other].frame
 
     def measure_overlap(self, first: Carried, second: Carried, *, touch: bool) -> NDArray[np.float64]:
-        """Return the common area of two regions at each input; for touching parts only what exceeds the tolerance."""
+        """Return the common area of two regions at each input; for touching parts only that beyond the tolerance."""
         a, b = self._get_box(first), self._get_box(second)
         # Bounding boxes reject most inputs cheaply.
         near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))

@@ -1,9 +1,9 @@
 """Interference of parts with non-parallel axes: surface points of each part are tested for being inside the other.
 
-Bodies of crossing axes have no common planes in which their sections could be intersected. So the surface of each is
-covered with points one *step* apart along edges and over faces, the outlines of teeth with all corners of their
-polygons. Every point inside the other body, deeper than rounding, is counted. Both bodies are tested against each
-other, so that only a wedge between neighbouring points can be missed: less than half a step deep.
+Bodies with crossing axes have no common planes in which their sections could be intersected. So the surface of each
+body is covered with points one *step* apart along edges and over faces. Points on the outlines of teeth include all
+corners of their polygons. Every point that lies inside the other body, deeper than rounding, is counted. Each body is
+tested against the other, so only a wedge between neighbouring points can be missed, less than half a step deep.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ MATCH_DECIMALS = 6
 
 
 class Item(NamedTuple):
-    """An item to be made or bought with its parts; ``name`` is that of its files."""
+    """An item to be made or bought, with the identical parts that it represents; its files have its ``name``."""
 
     name: str
     parts: tuple[Part, ...]
@@ -52,7 +52,7 @@ def _name_kind(part: Part) -> str:
 
 
 def _make_key(part: Part) -> Hashable:
-    """Return a key that identical parts have in common."""
+    """Return a key that is equal for identical parts only."""
     if part.like:
         return part.sort, part.like
     if part.sort == "key":

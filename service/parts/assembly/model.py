@@ -112,7 +112,7 @@ class Motion(Protocol):
         Raises
         ------
         NotMade
-            The input is outside the range.
+            If the input is outside the range.
         """
 
     def compute_state(self, inputs: Real) -> Any:

@@ -42,7 +42,7 @@ MAX_ASSEMBLY_SIZE = 20_000.0
 MILLIMETRES_PER_UNIT = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
 MAX_SPEEDS = 1000
-"""Maximum number of a gearbox speed in a request."""
+"""Maximum number by which a request can select a speed of a gearbox."""
 
 MAX_POSITIONS = 720
 """Maximum number of positions in which an assembly is shown."""

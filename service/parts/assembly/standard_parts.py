@@ -102,7 +102,7 @@ SHEET_THICKNESSES = (
     25.0,
     30.0,
 )
-"""Thicknesses of sheets on sale."""
+"""Commercial thicknesses of sheets, millimetres."""
 
 NOMINAL_TOLERANCE = 1e-6
 """Relative tolerance for matching a nominal diameter: a given length may be converted from another unit."""
@@ -122,8 +122,10 @@ def find_washer(diameter: float, widest: float) -> Washer | None:
 
 
 def find_retaining_ring(diameter: float, widest: float) -> RetainingRing:
-    """Return the retaining ring of a pin: the standard one if it is no wider than ``widest``, else one in
-    proportion."""
+    """Return the retaining ring of a pin.
+
+    It is the standard ring if that is no wider than ``widest``, otherwise a ring of proportional dimensions.
+    """
     size = find_nominal(diameter, tuple(RING_TABLE))
     if size is not None:
         s, groove, width, beyond, room = RING_TABLE[size]

@@ -97,7 +97,7 @@ def make_barrel_parts(design: BarrelCamDesign, problem: CamProblem, query: Parts
     Raises
     ------
     NotMade
-        The roller cannot cut the groove, or the parts do not fit.
+        If the roller cannot cut the groove, or the parts do not fit.
     """
     return _BarrelFitting(design.mechanism, query, MILLIMETRES_PER_UNIT[problem.length_unit]).build_assembly()
 

@@ -130,7 +130,7 @@ def _place_wall(radius: float, wall: Wall) -> Real:
 
 
 def _strip(one: Real, other: Real, first: int, second: int) -> NDArray[np.int64]:
-    """Return triangles between two closed lines around the axis, each in the order of its angles."""
+    """Return triangles that join two closed lines around the axis, whose corners are in the order of their angles."""
     if len(one) == len(other):
         k = np.arange(len(one))
         ahead = (k + 1) % len(one)

@@ -50,7 +50,7 @@ def fit_outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
     Raises
     ------
     NotMade
-        The contour has an edge, caused by a velocity jump of the follower, or no outline is accurate enough.
+        If the contour has an edge, caused by a velocity jump of the follower, or no outline is accurate enough.
     """
     share = np.arange(2 * MAX_CHORD_PARTS) / (2 * MAX_CHORD_PARTS)
     found = contour.evaluate_at(np.arange(len(contour.points))[:, None], share)

@@ -76,8 +76,9 @@ def make_face_arm(offset: float, reach: tuple[float, float], width: float) -> Lo
 
 
 def make_bell_crank(first: complex, second: complex, radius: float) -> Loop:
-    """Return two bars with round ends from a pivot at the origin, the second counter-clockwise of the first by less
-    than π.
+    """Return the outline of two bars with round ends that meet at a pivot at the origin.
+
+    The second bar is counter-clockwise of the first by less than π.
 
     Parameters
     ----------

@@ -49,17 +49,17 @@ class ShaftMotion:
 
     @property
     def closed(self) -> bool:
-        """One turn is a cycle."""
+        """Whether the range is one full cycle; one turn always is."""
         return True
 
     @property
     def reference(self) -> float:
-        """The parts are drawn at the start of a turn."""
+        """Input of the reference configuration, the start of a turn."""
         return 0.0
 
     @property
     def input_field(self) -> InputField:
-        """The input is an angle."""
+        """Request field that sets the input, which is an angle."""
         return "input_angle"
 
     def convert_input(self, value: float, scale: float) -> float:
@@ -76,7 +76,7 @@ class ShaftMotion:
 
 
 def make_rest_placement(inputs: Real) -> Placement:
-    """Return the displacement of the base: none."""
+    """Return the placement of the base, which does not move."""
     return Placement(np.ones(inputs.shape, np.complex128), np.zeros(inputs.shape, np.complex128))
 
 
@@ -88,7 +88,7 @@ def make_rotation(angle: Real, about: complex = 0j) -> Placement:
 
 @dataclass(frozen=True)
 class Displacement:
-    """s over the cam's angle, from the answer's table.
+    """Displacement s of a follower over the cam's angle, interpolated in the answer's table.
 
     Attributes
     ----------
@@ -104,13 +104,14 @@ class Displacement:
 
     @classmethod
     def from_program(cls, program: ProgramTable, unit: float) -> Displacement:
-        """Build the displacement of a program's table.
+        """Build the displacement from the table of a motion program.
 
         Parameters
         ----------
         program : ProgramTable
         unit : float
-            Factor of its displacements. Those of an arm become radians, like its velocities.
+            Factor by which the displacements are multiplied. Those of an arm are converted to radians, the unit of its
+            velocities.
         """
         s, v = np.array(program.s), np.array(program.v)
         # Velocities of an arm are already in radians.

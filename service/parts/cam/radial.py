@@ -84,7 +84,7 @@ def make_cam_parts(design: CamDesign, problem: CamProblem, query: PartsQuery) ->
     Raises
     ------
     NotMade
-        The contour cannot be cut, or the parts do not fit.
+        If the contour cannot be cut, or the parts do not fit.
     """
     return _CamFitting(design.mechanism, query, MILLIMETRES_PER_UNIT[problem.length_unit]).build_assembly()
 
@@ -163,7 +163,7 @@ class CamBuilder:
     sizes : Sizes
     factor : float
         Millimetres per length unit of the design, at the built size.
-    planes : Planes
+    planes : CamPlanes
     """
 
     def __init__(self, mechanism: CamMechanism, sizes: Sizes, factor: float, planes: CamPlanes) -> None:

@@ -161,7 +161,7 @@ def find_nearest(corners: Real, width: int, height: int) -> NDArray[np.int64]:
     x, y, z = np.moveaxis(corners, -1, 0)
     (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x.T, y.T, z.T
     whole = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    whole = np.where(whole == 0.0, np.inf, whole)  # a sliver is level
+    whole = np.where(whole == 0.0, np.inf, whole)  # a degenerate triangle gets a constant depth
     # Gradient of the depth over columns and rows.
     along = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / whole
     down = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / whole

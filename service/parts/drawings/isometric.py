@@ -48,7 +48,7 @@ BAND_ANGLES = ((20.0, math.radians(15.0)), (7.0, math.radians(30.0)), (0.0, math
 """Angle of the normal within one band, by minimum radius of the arc in pixels."""
 
 MIN_CORNERS_TO_THIN, MIN_CORNER_SIZE = 60, 0.5
-"""Outlines with at least this many corners lose those that change them by less than this many pixels."""
+"""Minimum number of corners of an outline that is simplified, and maximum change by the simplification, pixels."""
 
 MIN_SLAB_HEIGHT = 0.5
 """Minimum height of a slab, pixels, unless a piece is thinner."""
@@ -247,10 +247,10 @@ def project(place: complex, height: float) -> complex:
 
 @lru_cache(maxsize=256)
 def divide_outline(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> tuple[Stretch, ...]:
-    """Divide an outline into bands, counter-clockwise; normals point out of the solid, relative to
-    :data:`VIEWER_DIRECTION`.
+    """Divide an outline into bands of one shade, counter-clockwise.
 
-    The result is cached, because each slab of a part needs the same.
+    The normals point out of the solid and are relative to :data:`VIEWER_DIRECTION`. The result is cached, because all
+    slabs of a part have the same outline.
     """
     found = []
     for start, end, bulge in _iterate_edges(outline):

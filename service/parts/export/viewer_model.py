@@ -39,7 +39,7 @@ MIN_TRACKED_INPUTS = 2880
 """Minimum number of inputs in the tracking of angles, so that full turns are counted correctly."""
 
 ENDLESS_TEST_DEGREES = 2000.0
-"""Degrees beyond the range at which the motion is tested for continuing."""
+"""Angle beyond the range, degrees, at which the motion is tested for being endless."""
 
 
 def make_view(assembly: Assembly, positions: int) -> AssemblyView:

@@ -1,4 +1,4 @@
-"""Parts are made in a separate process, one request after the other, with the limits of jobs."""
+"""Worker process that makes parts, one request after the other, with the limits of jobs."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Workshop:
 
         Raises
         ------
-        Busy, GivenUp, Gone, Lost
+        Busy, GivenUp, ClientGone, ProcessLost
             See :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """
         key = hash_call(work, args)

@@ -72,8 +72,9 @@ def write_package(assembly: Assembly, process: Process, title: str, at: float) -
 
 
 def write_item_file(item: Item, form: PartFile, title: str) -> bytes:
-    """Write a file of one item: its cutting outline, or its solid in printing position; only ``dxf`` works without the
-    extra.
+    """Write a file of one item: its cutting outline, or its solid in printing position.
+
+    Only ``dxf`` is available without the extra ``cad``.
     """
     if form == "dxf":
         return write_cutting_dxf(item.part, f"{title}: {item.name}").encode()

@@ -9,7 +9,9 @@ web      the disc that holds a ring on its shaft, in a level of its own;
 play     reduction of tooth thickness that prevents binding;
 cluster  gears of a shaft that slide together on a feather key, in a range of levels.
 
-:mod:`teeth` and :mod:`keys` define how wheels are cut, :mod:`stand` arranges the shafts of a train without
-interference, :mod:`housing` makes plates, posts and shafts with the parts on them, and :mod:`motion` describes the
-rotations. The makers are :mod:`ordinary` and its siblings.
+:mod:`service.parts.gears.teeth` and :mod:`service.parts.assembly.keys` define the outlines of teeth and bores.
+:mod:`service.parts.gears.stand` arranges the shafts of a train without interference,
+:mod:`service.parts.gears.housing` makes plates, posts and shafts with the parts on them, and
+:mod:`service.parts.gears.motion` describes the rotations. Each type of train has a maker, for example
+:mod:`service.parts.gears.ordinary`.
 """

@@ -62,7 +62,7 @@ def make_bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | 
     Raises
     ------
     NotMade
-        The parts do not fit.
+        If the parts do not fit.
     """
     (stage,) = train.stages
     cones = stage.cones(train.pressure_angle)

@@ -9,8 +9,9 @@ driven gears are fixed::
     neutral                     a    b
     sliding, B in mesh               a    b
 
-So no sliding gear passes a fixed one for any teeth, and one pair leaves mesh before the other enters. A cluster
-of one gear needs two levels, in mesh and next to it. The pair of a fixed stage is always in mesh and needs one level.
+So no sliding gear has to pass a fixed one, whatever the numbers of teeth, and one pair leaves mesh before the other
+enters it. A cluster of one gear needs two levels, one in mesh and one next to it. The pair of a stage without shifting
+is always in mesh and needs one level.
 """
 
 from __future__ import annotations

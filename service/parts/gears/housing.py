@@ -1,7 +1,8 @@
 """Two plates with posts between them, and the shafts that they hold with all parts on them.
 
 A shaft carries, from below: a plate, wheels with keys, washers or spacers in every gap, and the other plate. A shaft
-that reaches only one plate ends beyond its farthest wheel. Its ends have the same fasteners as pins (:mod:`fasteners`).
+that reaches only one plate ends beyond its farthest wheel. Its ends have the same fasteners as pins
+(:mod:`service.parts.assembly.fasteners`).
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ def make_layshaft_parts(design: LayshaftDesign, problem: LayshaftProblem, query:
     Raises
     ------
     NotMade
-        The first gear is direct drive, or the shafts do not fit.
+        If the first gear is direct drive, or the shafts do not fit.
     """
     sizing = GearSizing(query, problem.length_unit)
     mechanism = design.mechanism.model_copy(

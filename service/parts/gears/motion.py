@@ -1,4 +1,4 @@
-"""Rotation of the bodies of a train: each about its own axis, planets with their axes about another."""
+"""Rotation of the bodies of a train: each rotates about its own axis, and the axes of planets rotate about another."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.assembly.model import Carrier, Frame, InputField, Placement
 
 GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Golden ratio: its multiples sample every mesh in all its phases."""
+"""Reciprocal of the golden ratio. The fractional parts of its multiples are nearly evenly spread for any count. They
+are irrational, so that the inputs sample every mesh in all its phases."""
 
 
 class BodyRotation(NamedTuple):
-    """A body: its axis, its speed, and the speed of its axis about another one; relative to the input's, about z.
+    """Rotation of a body: its axis, its speed, and the speed of its axis about another axis.
+
+    Speeds are about z and relative to that of the input.
 
     ``frame`` is the plane in which it rotates, if that is not the assembly's.
     """
@@ -36,7 +39,7 @@ class TrainMotion:
 
     Attributes
     ----------
-    bodies : mapping of str to Turning
+    bodies : mapping of str to BodyRotation
         Bodies by the link names of their carriers.
     size : float
         Size of the train, millimetres.

@@ -41,7 +41,7 @@ def make_train_parts(design: GearTrainDesign, problem: GearTrainProblem, query: 
     Raises
     ------
     NotMade
-        Such a train with non-parallel shafts is not available, or the shafts do not fit.
+        If such a train with non-parallel shafts is not available, or the shafts do not fit.
     """
     stages = build_train(design.mechanism).stages
     plays = find_backlash(stages, design.metrics.meshes)

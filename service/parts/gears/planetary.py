@@ -48,7 +48,7 @@ def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, que
     Raises
     ------
     NotMade
-        The train has bevel gears or several carriers, cannot be built between two plates, or does not fit.
+        If the train has bevel gears or several carriers, cannot be built between two plates, or does not fit.
     """
     mechanism = design.mechanism
     arrangement = ARRANGEMENTS[mechanism.arrangement]
@@ -80,8 +80,9 @@ def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, que
 
 
 def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
-    """Return the minimum distance from a planet's axis to a gear that its axle passes, and their names; infinity if
-    none.
+    """Return the minimum distance from a planet's axis to a gear that its axle passes, and their names in words.
+
+    The distance is infinite if no axle passes a gear.
     """
     near = [(math.inf, "")]
     plate = 0 if build.carrier is None else build.carrier

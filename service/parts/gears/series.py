@@ -26,7 +26,7 @@ def make_series_parts(design: TrainSeriesDesign, problem: TrainSeriesProblem, qu
     Raises
     ------
     NotMade
-        A train is planetary or reverted, or the parts do not fit.
+        If a train is planetary or reverted, or the parts do not fit.
     """
     units = [unit for unit in design.mechanism.units if isinstance(unit, GearTrainMechanism)]
     if len(units) < len(design.mechanism.units):

@@ -43,7 +43,7 @@ RIM_WIDTH = 2.5
 """Width of a ring outside its roots, modules."""
 
 DEFAULT_TOOTH_PLAY, MAX_TOOTH_PLAY = 0.15, 0.3
-"""Maximum play of teeth in modules: by default, and as requested."""
+"""Maximum play of teeth in modules: of the default, and of a request."""
 
 MAX_TRIED = 6
 """Maximum number of default bores that are tried."""

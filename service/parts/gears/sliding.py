@@ -50,7 +50,7 @@ def make_sliding_parts(design: GearboxDesign, problem: GearboxProblem, query: Pa
     Raises
     ------
     NotMade
-        The gearbox has no such speed, or the shafts do not fit.
+        If the gearbox has no such speed, or the shafts do not fit.
     """
     speeds = design.metrics.speeds
     number = 1 if query.speed is None else query.speed

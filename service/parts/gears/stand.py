@@ -22,7 +22,7 @@ MAX_TRIED = 4000
 """Maximum number of arrangements that are tried."""
 
 COAXIAL_TOLERANCE = 1e-9
-"""Share of a bore below which two shafts are coaxial."""
+"""Distance of two axes, as a share of the bore, below which the shafts are coaxial."""
 
 Reach = tuple[int, int]
 
@@ -102,10 +102,12 @@ def find_arrangement(stage: Stage, stages: int, highest: int, room: Clearances, 
     Parameters
     ----------
     stage : callable
+        Places the wheels of a stage.
     stages : int
+        Number of stages.
     highest : int
         Highest level of a wheel.
-    room : Room
+    room : Clearances
     polygon : bool
         Whether the stages return to the first axis along a polygon.
     """

@@ -38,7 +38,7 @@ def make_teeth(gear: Gear, centre: complex, tooth_at: float, helix_angle: float 
     Raises
     ------
     DimensionError
-        The cutter would come to a point.
+        If the cutter would come to a point.
     """
     half = fit_chain(_make_half_space(gear, helix_angle, play))
     return _repeat_spaces(half, round(gear.teeth), centre, tooth_at, gear.pitch_radius)

@@ -128,7 +128,7 @@ def check_assembly(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Asse
     Raises
     ------
     NotMade
-        Two parts collide, or a wall is too thin.
+        If two parts collide, or a wall is too thin.
     """
     thin = find_thin_walls(assembly, 0.99 * MIN_WALL_PER_PIN * sizes.pin)
     if thin:

@@ -48,7 +48,7 @@ def make_worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | N
     Raises
     ------
     NotMade
-        The parts do not fit.
+        If the parts do not fit.
     """
     (stage,) = train.stages
     drive = stage.worm(train.pressure_angle)

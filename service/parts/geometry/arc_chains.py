@@ -23,7 +23,7 @@ MIN_CORNER_ANGLE, MIN_CORNER_RATIO = 0.12, 3.0
 
 
 class ArcChain:
-    """Corners from the first point to the last, and the bulge from each to the next."""
+    """A chain of arcs and lines: its corners from the first to the last, and the bulge from each to the next."""
 
     def __init__(self, corners: list[complex], bulges: list[float]) -> None:
         self.corners, self.bulges = corners, bulges
@@ -63,8 +63,9 @@ class ArcChain:
 
 
 def fit_chain(points: Complex, tolerance: float = ARC_TOLERANCE) -> ArcChain:
-    """Fit a chain of arcs, as long as the tolerance permits; its corners are given points and include the curve's
-    corners.
+    """Fit a chain of arcs that are as long as the tolerance permits.
+
+    The corners of the chain are some of the given points, and include the corners of the curve.
 
     Parameters
     ----------

@@ -34,7 +34,8 @@ STEPS_AROUND, STEPS_ALONG = 144, 48
 """Number of triangle steps about the axis, and along it over the size of the body."""
 
 FINE_EDGES, FINE_EDGES_IN_HOLE = 60.0, 4.0
-"""Maximum triangle edge near a cut: one over these shares of the body's size and of the radius of a cut cylinder."""
+"""Minimum numbers of triangle edges near a cut that span the body's size, and the radius of each cylinder that is cut.
+The smallest of the resulting edge lengths applies."""
 
 FAR_SHARE = 0.1
 """Distance from a polygon's box, as a share of its size, beyond which the box replaces it."""

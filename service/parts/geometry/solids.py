@@ -8,7 +8,8 @@ and a cross section between two heights. Two parts are compared by the latter:
 * for a prism its region, which is exact;
 * for a body of revolution the ring between its minimum and maximum radius there, which is never too small;
 * for all others the section half-way between, which is exact at that height. The heights are divided into
-  :data:`SLICE_COUNT` steps; for teeth twisted against each other, one height soon shows the same relation as another.
+  :data:`SLICE_COUNT` steps. Few are sufficient for teeth that are twisted against each other, because in the course of
+  the motion every height shows the same relative positions.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from service.parts.geometry.regions import (
 )
 
 SLICE_COUNT = 5
-"""Number of height steps in which two bodies are compared if one of them is no prism."""
+"""Number of height steps in which two bodies are compared unless both are prisms."""
 
 
 GAUSS_NODES = 12
@@ -141,8 +142,9 @@ class TwistedPrism(NamedTuple):
 
 
 class TaperedBody(NamedTuple):
-    """Intersection of a body of revolution with a cone of straight lines to an apex, such as bevel teeth; holes are
-    straight.
+    """Intersection of a body of revolution with a cone of straight lines to an apex, such as bevel teeth.
+
+    Holes are not tapered.
 
     Attributes
     ----------
@@ -193,13 +195,12 @@ class TaperedBody(NamedTuple):
         )
 
     def find_ends(self, places: Complex) -> tuple[Complex, Complex]:
-        """Return where lines to the apex through points of the plane ``at`` meet lower and upper end: radius + i ·
-        height.
+        """Return the intersections of lines to the apex with the lower and the upper end, as radius + i · height.
 
         Parameters
         ----------
         places : Complex
-            Points of the outline, shape (n,).
+            Points of the outline in the plane ``at`` through which the lines run, shape (n,).
         """
         _, inner, outer, upper_outer, upper_inner, _ = self.profile
         # Slope of each line to the apex: radius per height.

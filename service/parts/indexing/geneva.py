@@ -93,7 +93,7 @@ def make_geneva_parts(design: IndexingDesign, problem: IndexingProblem, query: P
     Raises
     ------
     NotMade
-        A drag link drives the crank, or the parts do not fit.
+        If a drag link drives the crank, or the parts do not fit.
     """
     mechanism = design.mechanism
     assert isinstance(mechanism, GenevaMechanism)

@@ -94,7 +94,7 @@ def make_ratchet_parts(design: RatchetDesign, problem: IndexingProblem, query: P
     Raises
     ------
     NotMade
-        A nose does not fit between the teeth, or the parts do not fit.
+        If a nose does not fit between the teeth, or the parts do not fit.
     """
     return _RatchetFitting(design.mechanism, query, MILLIMETRES_PER_UNIT[problem.length_unit]).build_assembly()
 
@@ -169,7 +169,7 @@ class _Builder:
 
     def _make_pawl(self, name: str, number: int, lift: float) -> list[Part]:
         stack, pivot = self._stack, self._pivots[number]
-        # Rotation from the first pawl, while it holds the wheel, to this one at that moment.
+        # Rotation that takes the first pawl, while it holds the wheel, to the position of this pawl at that moment.
         turn = pivot / self._ratchet.pivot * cmath.exp(-1j * lift)
         shape = self._make_pawl_outline()
         corners = tuple(pivot + turn * (z - self._ratchet.pivot) for z in shape.corners)

@@ -118,7 +118,7 @@ def make_spherical_parts(design: IndexingDesign, problem: IndexingProblem, query
     Raises
     ------
     NotMade
-        The parts do not fit.
+        If the parts do not fit.
     """
     mechanism = design.mechanism
     assert isinstance(mechanism, SphericalGenevaMechanism)
@@ -206,7 +206,7 @@ class _Builder:
         return Sizes(sizes.process, WIDTH_PER_PIN * diameter, diameter, sizes.thickness, sizes.clearance)
 
     def find_fault(self) -> str:
-        """Return what does not fit in the wheel or on the crank, or an empty string."""
+        """Return the reason why something does not fit in the wheel or on the crank, or an empty string."""
         wall, inside, end = MIN_WALL_PER_PIN * self._sizes.pin, self._inside, self._slot_end
         if not 0.5 * self._sizes.collar < self._roller:
             return "the roller is not wider than the fastener of its pin"

@@ -407,8 +407,9 @@ class _Builder:
         )
 
     def _make_bosses(self, plane: int, low: float, high: float) -> list[Prism]:
-        """Return the bosses of a printed base around its shafts: up to the nearest plate, or down to it for an upper
-        base.
+        """Return the bosses of a printed base around its shafts.
+
+        They extend up to the nearest plate, or down to it from an upper base.
         """
         prisms = []
         for joint in self._planes.pins:

@@ -59,7 +59,7 @@ def find_teeth(ratio: float) -> tuple[int, int]:
     Raises
     ------
     NotMade
-        No teeth up to :data:`MAX_TEETH` have the ratio.
+        If no teeth up to :data:`MAX_TEETH` have the ratio.
 
     Examples
     --------
@@ -95,9 +95,9 @@ def make_pair_wheels(mechanism: Mechanism, pair: GearPair) -> list[PairWheel]:
     Raises
     ------
     TopologyError
-        The pair cannot be placed, see :func:`~kinematics.linkage.layout.list_gear_discs`.
+        If the pair cannot be placed, see :func:`~kinematics.linkage.layout.list_gear_discs`.
     NotMade
-        No teeth have the ratio.
+        If no teeth have the ratio.
     """
     first, second, *idler = list_gear_discs(mechanism, pair)
     teeth = dict(zip((first.name, second.name), find_teeth(pair.ratio), strict=True))

@@ -44,8 +44,8 @@ MAX_PIN_PER_SIZE, MAX_PIN_PER_LINK = 0.04, 0.35
 """Thickest default pin as a share of the mechanism's size, and of its shortest link."""
 
 MIN_WIDTH_SHARE = 1e-4
-"""Width of practically infinitely thin links, as a share of the mechanism's size: links on the thinnest pins in the
-largest assembly are hardly thinner.
+"""Width of links that are practically infinitely thin, as a share of the mechanism's size. Links on the thinnest pins
+in the largest assembly are hardly thinner.
 """
 
 Shafts = Literal["one_side", "both_sides"]
@@ -65,7 +65,7 @@ def make_linkage_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuer
     Raises
     ------
     NotMade
-        The mechanism cannot be driven, no gears have its ratio, or the parts do not fit.
+        If the mechanism cannot be driven, no gears have its ratio, or the parts do not fit.
     """
     linkage = _LinkageFitting(design, problem, query)
     ways = linkage.find_divisions()
@@ -286,7 +286,7 @@ def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tu
     Raises
     ------
     NotMade
-        The mechanism cannot move through the range.
+        If the mechanism cannot move through the range.
     """
     slides = mechanism.has_slide_input
     branch = find_branch(mechanism)

@@ -16,10 +16,12 @@ from service.parts.assembly.model import Carrier, InputField, Placement
 from service.parts.assembly.sizes import NotMade
 
 GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Golden ratio: its multiples sample a mesh of any tooth number in all phases."""
+"""Reciprocal of the golden ratio. The fractional parts of its multiples are nearly evenly spread for any count. They
+are irrational, so that the inputs sample a mesh of any tooth number in all its phases."""
 
 INPUT_TOLERANCE = 1e-9
-"""Share of the range by which a requested input may lie outside: an answer's own first and last inputs are its ends."""
+"""Share of the range by which a requested input may lie outside it. Clients request the rounded first and last inputs
+of an answer, which are the ends of the range."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class LinkageMotion:
 
     @property
     def input_field(self) -> InputField:
-        """A slide is driven by its place, a crank by its angle."""
+        """Request field that sets the input: the place of a slide, or the angle of a crank."""
         return "input_place" if self.mechanism.has_slide_input else "input_angle"
 
     def convert_input(self, value: float, scale: float) -> float:

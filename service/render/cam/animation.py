@@ -1,4 +1,6 @@
-"""A cam turning under its follower, the roller rolling without slip; a barrel's groove passing its roller."""
+"""Animations of cams: a cam turns under its follower, whose roller rolls without slip; a barrel's groove passes its
+roller.
+"""
 
 from __future__ import annotations
 

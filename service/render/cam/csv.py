@@ -17,8 +17,9 @@ from synthesis.kinds.cam.problem import CamProblem
 
 
 def write_cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
-    """Write the inspection table of a cam design; numbers to twelve digits, cells empty where the follower has no
-    contact.
+    """Write the inspection table of a cam design.
+
+    Numbers have twelve digits. Cells are empty where the follower has no contact.
     """
     scene, unit = CamScene(design.mechanism), problem.length_unit
     contact = scene.contact

@@ -44,8 +44,10 @@ def write_gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, t
 
 
 def _train_sizes(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
-    """Return :func:`_list_sizes` with the module as given, and without a base circle for gears drawn in axial
-    section."""
+    """Return the sizes of :func:`_list_sizes` with the module as given in the design.
+
+    Gears that are drawn in axial section have no base circle.
+    """
     module, *diameters, x, y = _list_sizes(placed.gear, placed.centre)
     if placed.section is not None:
         return [module, *diameters[:-1], "", x, y]

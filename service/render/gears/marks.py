@@ -38,8 +38,9 @@ LABEL_HALF_HEIGHT = 8.0
 def draw_circles(
     gear: Gear, centre: complex, view: Viewport, colour: str, shaded: str, opacity: float, /, **marks: str
 ) -> Element:
-    """Draw the tip circle thin and the pitch circle dash-dotted; the one named by ``shaded``, "tip" or "pitch", is
-    filled.
+    """Draw the tip circle thin and the pitch circle dash-dotted.
+
+    The circle named by ``shaded``, "tip" or "pitch", is filled.
     """
     at = view.point(centre)
     faces: dict[str, dict[str, str | float]] = {"tip": {"fill": "none"}, "pitch": {"fill": "none"}}

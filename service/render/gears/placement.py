@@ -52,12 +52,22 @@ def enclose_gears(gears: Iterable[PlacedGear]) -> Box:
 
 
 def align_mate(gear: Gear, tooth_at: float, mate: Gear, ahead: float) -> float:
-    """Return the angle of a tooth of ``mate`` at which one of its spaces faces the nearest tooth of ``gear`` at the
-    contact.
+    """Return the angle of a tooth of ``mate`` with which it meshes with ``gear``.
 
-    That tooth of ``gear`` is at some arc length past the contact on the pitch circle, and the space of ``mate`` at the
-    same length past it, in the opposite direction for external gears. ``ahead`` is the direction from the centre of
-    ``gear`` to the contact; with internal teeth both gears have it in the same direction.
+    A space of ``mate`` must face the tooth of ``gear`` nearest to the contact. That tooth lies at some arc length past
+    the contact on the pitch circle. The space of ``mate`` lies at the same arc length past it, in the opposite
+    direction for external gears.
+
+    Parameters
+    ----------
+    gear : Gear
+        The gear whose position is given.
+    tooth_at : float
+        Angle of the middle of one of its teeth, radians.
+    mate : Gear
+        The gear that is rotated into mesh.
+    ahead : float
+        Direction from the centre of ``gear`` to the contact, radians. With internal teeth it is the same for ``mate``.
     """
     # Arc length of the nearest tooth past the contact, as an angle of the mate.
     past = math.remainder(tooth_at - ahead, 2.0 * math.pi / gear.teeth) * gear.pitch_radius / mate.pitch_radius

@@ -99,9 +99,10 @@ def _find_copy_rotation(
     planet: str,
     turn: float,
 ) -> float:
-    """Return the own rotation of a planet's copy, ``turn`` ahead of the first, with which all its gears mesh.
+    """Return the rotation of a planet's copy about its own axis with which all its gears mesh.
 
-    Its first gear determines the rotation up to whole teeth; among these the best fit for the other gears is chosen.
+    The copy is ``turn`` radians ahead of the first copy on the carrier. Its first gear determines the rotation up to
+    whole teeth. Among these rotations the one that fits the other gears best is chosen.
     """
     (own, central), *others = arrangement.list_central_meshes(planet)
     ahead = cmath.phase(centres[planet]) + turn

@@ -21,9 +21,9 @@ UNIT_GAP = 0.15
 class SeriesGear:
     """A gear of a unit.
 
-    ``speed`` and ``orbit`` are its own speed and that of its carrier about ``axis``, relative to the input's of the
-    series. ``layers`` are the names of its layers; ``line`` separates its words from those of others at the same
-    centre.
+    ``speed`` and ``orbit`` are its own speed and that of its carrier about ``axis``, relative to the input speed of the
+    series. ``layers`` are the names of its layers in a DXF drawing. ``line`` is the number of the text line of its
+    caption, which keeps captions at one centre apart.
     """
 
     placed: PlacedGear

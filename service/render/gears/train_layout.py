@@ -1,8 +1,8 @@
 """Positions of the gears of an ordinary train: shaft centres in the plane, and rotations in which all teeth mesh.
 
-The shafts lie on one line; those of a reverted train alternate between two places, or go round a triangle for three
-stages, so that the output shaft returns to the input's axis. A ring is placed so that its pinion is towards the shaft
-before.
+The shafts lie on one line. Those of a reverted train alternate between two places, or form a triangle for three stages,
+so that the output shaft returns to the input's axis. A ring is placed so that its pinion lies towards the previous
+shaft.
 
 Shafts that intersect or cross have no common plane: a train with bevel or worm stages has several *views*, side by
 side. Stages of parallel shafts are viewed along their axes, bevel stages are cut by the plane of their shafts, worm

@@ -37,9 +37,10 @@ GEAR_FILLS = ("#e8eef6", "#e6f1ea", "#f8eee2", "#f1ecf6", "#eef0f2")
 
 
 class TurningGear(NamedTuple):
-    """A gear with its speed, and that of its carrier about ``axis``, relative to the input's; ``tone`` is its colour.
+    """A gear that rotates in an animation.
 
-    ``arm`` is the colour of its carrier.
+    ``speed`` is its own speed, and ``orbit`` that of its carrier about ``axis``, both relative to the input's speed.
+    ``tone`` is the index of its colour, and ``arm`` is the colour of its carrier.
     """
 
     placed: PlacedGear

@@ -136,10 +136,10 @@ class Scene:
         return float(slide.angle + motion.angles[slide.link][0, k] - self.mechanism.link_angle(slide.link))
 
     def iterate_rails(self, beyond: float) -> Iterator[tuple[Slide, complex, complex]]:
-        """Yield the lines of slides with both ends: on the ground over all places of their blocks, on a link at the
-        first input.
+        """Yield the lines of slides with both ends.
 
-        The lines extend beyond these places by the length ``beyond``.
+        A line on the ground covers all positions of its block, a line on a moving link the position at the first input.
+        It extends beyond them by the length ``beyond``.
         """
         first = self.get_joints(0)
         for slide in self.mechanism.slides if first else ():

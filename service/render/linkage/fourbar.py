@@ -24,13 +24,13 @@ from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign
 from synthesis.model.linkage.conversion import DrivenFourbar, build_driven_fourbar
 
 MISS_TOLERANCE = 1e-6
-"""A configuration meets a position if it misses by less than this share of the task's size, and this angle in radians:
-far below the visible, far above rounding.
+"""Maximum deviation with which a configuration meets a target: as a share of the task's size, and as an angle in
+radians. It is far below visible deviations and far above rounding errors.
 """
 
 LIMIT_TOLERANCE, LIMIT_SHIFT = 1e-6, 1e-9
-"""Input angles (radians) beyond a limit by less than the first value count as at the limit and are moved inside by the
-second, so that a target at a toggle remains visible.
+"""Distance of an input angle from a limit up to which it counts as lying at the limit, and shift by which it is moved
+inside, radians. The shift keeps a target at a toggle visible.
 """
 
 CRANK_PATH_SAMPLES = 33
@@ -52,7 +52,9 @@ MAX_TARGETS = 24
 """Maximum number of targets that are drawn and listed; more are thinned evenly, keeping first and last."""
 
 SMALL_MOTION_SHARE, SMALL_PART_SHARE = 0.15, 0.04
-"""A detail is drawn if all moving joints together, or one group of joints, lie within this share of the diagonal."""
+"""Maximum size of the box of all moving joints, and of the box of a group of joints, as shares of the diagonal, for
+which a detail is drawn.
+"""
 
 MAX_REST_SHARE = 0.25
 """Limit, as a share of the diagonal, by which the unused part of the curve enlarges the shown box on each side."""
@@ -246,8 +248,9 @@ def _find_configurations(design: LinkageDesign, driven: DrivenFourbar, demands: 
 def _assemble(
     linkage: Fourbar, toggles: Real, angle: float, assembly: int
 ) -> tuple[complex, complex, complex, float] | None:
-    """Return A, B, P and the coupler angle; None if it cannot close. An angle at a limit (``AT_LIMIT``) is moved
-    inside.
+    """Return A, B, P and the coupler angle at an input angle; None if the linkage cannot be assembled there.
+
+    An angle within :data:`LIMIT_TOLERANCE` of a toggle is also tried slightly on either side of the toggle.
     """
     off = np.remainder(toggles - angle + np.pi, 2.0 * np.pi) - np.pi
     # Distance to the nearest toggle; cranks have none.

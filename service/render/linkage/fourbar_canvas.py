@@ -37,7 +37,7 @@ class Canvas:
 
     Attributes
     ----------
-    scene : Scene
+    scene : FourbarScene
         The content.
     viewport : Viewport
         The map to the panel; recorded on the root as ``data-scale``, ``data-centre`` and ``data-middle``.

@@ -29,7 +29,7 @@ def draw_fourbar_panel(
 
     Parameters
     ----------
-    scene : Scene
+    scene : FourbarScene
         The content.
     viewport : Viewport
         The map to the panel.

@@ -1,4 +1,4 @@
-"""Sheet contents by kind of problem: one function per kind, collected in one table."""
+"""Content of a linkage's sheet for each kind of problem: one function per kind, collected in one table."""
 
 from __future__ import annotations
 
@@ -168,8 +168,9 @@ def _truncate_rows(rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def make_function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Content:
-    """Return the content for a function generator: targets, the range of the input as an arc, structural error or
-    output.
+    """Return the content for a function generator.
+
+    It shows the targets, the range of the input as an arc, and the structural error or the output.
     """
     unit, error, dials = problem.length_unit, design.structural_error, design.dials
     slides = error.unit == "length"
@@ -214,8 +215,9 @@ def make_function(design: FunctionDesign, problem: FunctionProblem, linkage: Dri
 
 
 def make_quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, linkage: DrivenLinkage) -> Content:
-    """Return the content for a quick return: both limit positions, and the output and its rate over a turn from the
-    first.
+    """Return the content for a quick return.
+
+    It shows both limit positions, and the output and its rate over a turn from the first of them.
     """
     unit, metrics, kind = problem.length_unit, design.metrics, design.mechanism.type
     scene = Scene(linkage, linkage.find_target_inputs(design), [joint for joint in linkage.moving if joint != "P"])
@@ -252,8 +254,9 @@ def make_quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, li
 
 
 def make_steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLinkage) -> Content:
-    """Return the content for a steering mechanism: straight and at both locks; outer angle and error over the inner
-    angle.
+    """Return the content for a steering mechanism.
+
+    It shows the linkage straight ahead and at both locks, and the outer angle and its error over the inner angle.
     """
     unit, metrics, targets = problem.length_unit, design.metrics, design.targets
     straight = float(linkage.mechanism.reference_input)

@@ -38,7 +38,7 @@ class DrivenLinkage:
         Raises
         ------
         NotBuilt
-            The analysis core accepts no such mechanism.
+            If the analysis core accepts no such mechanism.
         """
         mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         if mechanism is None:

@@ -77,11 +77,9 @@ def draw_linkage_sheet(design: AnyDesign, problem: ProblemBase, title: str) -> s
 
 
 def _list_metrics(metrics: BaseModel, problem: ProblemBase, content: Content) -> list[tuple[str, str]]:
-    """Return the metrics; individual transmission angles only if there are several, because their minimum is listed
-    anyway.
-    """
+    """Return the rows of the metrics, without those that the sheet shows elsewhere."""
     left_out = set(content.left_out)
-    # A single transmission angle is already listed as the minimum.
+    # A single transmission angle is already listed as the minimum; individual ones are listed if there are several.
     if len(getattr(metrics, "transmission_angles", ())) < 2:
         left_out.add("transmission_angles")
     return list_entries(metrics, problem, left_out, {**TITLES, **content.titles})

@@ -108,8 +108,9 @@ def _list_springs(design: SprungDesign, problem: SpringBalancingProblem, diagona
 
 
 def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, linkage: DrivenLinkage) -> Content:
-    """Return the content for a spring-balanced linkage: places of its motion with springs; the drive without and with
-    them.
+    """Return the content for a spring-balanced linkage.
+
+    It shows positions of its motion with the springs, and the drive torque or force without and with them.
     """
     curves = drive_curves(problem, design)
     inputs = np.linspace(curves.at[0], curves.at[-1], PLACE_COUNT)
@@ -157,8 +158,9 @@ def make_spring_balancing(design: SprungDesign, problem: SpringBalancingProblem,
 
 
 def _find_torsion_place(linkage: DrivenLinkage, scene: Scene, links: tuple[str, str]) -> tuple[complex, float]:
-    """Return the place of a torsion spring in the first configuration: the pin of both links, or the second's first
-    pin.
+    """Return the place of a torsion spring in the first configuration, and the direction of its free end.
+
+    The place is the pin that joins both links, or else the first pin of the second link. The direction is in radians.
     """
     mechanism, joints = linkage.mechanism, scene.get_joints(0)
     listed = [joint for joint in mechanism.links[links[1]] if joint in joints]

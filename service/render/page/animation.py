@@ -34,7 +34,7 @@ MARGIN_SHARE = 0.05
 """Margin around the content as a share of its longer side."""
 
 PALETTE_SIZE = 48
-"""Size of the palette, including mixtures at smooth edges."""
+"""Number of colours in the palette, including the mixed colours of smoothed edges."""
 
 CIRCLE_CORNERS = 48
 """Number of corners of a polygon that represents a circle."""

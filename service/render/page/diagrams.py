@@ -26,7 +26,7 @@ AXIS_SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 FONT_SIZE = 10.0
 
 FLATNESS_TOLERANCE = 1e-9
-"""Ranges below this share of their values are drawn as a level line in the middle."""
+"""Range of values, as a share of their magnitude, below which they are drawn as a level line in the middle."""
 
 
 @dataclass(frozen=True)

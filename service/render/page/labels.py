@@ -1,8 +1,9 @@
 """Placement of labels in a panel: next to their points, clear of links, joints and each other.
 
 Every label tries positions on rings around its point, in a fixed order of directions, and takes the one of least cost.
-The cost depends on what the label's box would cover: other labels most, then joints, links, curves. A larger ring and a
-direction other than the preferred one cost little. Labels are placed in order of importance.
+The cost depends on the elements that the label's box would cover. Other labels cost most, followed by joints, links and
+curves. A larger ring and a direction other than the preferred one cost little. Labels are placed in order of
+importance.
 """
 
 from __future__ import annotations
@@ -221,7 +222,7 @@ class Labels:
         return np.repeat(start, count) + share * np.repeat(step, count), np.repeat(weight, count)
 
     def _compute_cost(self, centres: Complex, width: float, height: float, points: Complex, weights: Real) -> Real:
-        """Compute the cost of what boxes at the given centres cover."""
+        """Compute the cost of the elements that boxes at the given centres cover."""
         x, y = centres.real, centres.imag
         left, right, low, high = x - 0.5 * width, x + 0.5 * width, y - 0.5 * height, y + 0.5 * height
         panel = self._panel

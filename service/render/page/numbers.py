@@ -16,8 +16,9 @@ MISSING_VALUE = "–"
 def format_length(value: float, size: float = 0.0, digits: int = 6, most: int = 15) -> str:
     """Format a length to ``digits`` significant digits.
 
-    ``size`` is that of the mechanism: a value that is a rounding error of it is written as zero, and one beyond it
-    gets more digits, up to ``most``, so that coordinates far from the origin still distinguish its points.
+    ``size`` is the size of the mechanism. A value that is a rounding error relative to it is written as zero. A larger
+    value gets more digits, up to ``most``, so that coordinates far from the origin still distinguish the points of the
+    mechanism.
     """
     if not math.isfinite(value):
         return MISSING_VALUE

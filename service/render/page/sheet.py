@@ -76,8 +76,9 @@ def stack_blocks(
 def arrange_columns(
     columns: Sequence[Sequence[Block]], widths: Sequence[float], top: float
 ) -> tuple[list[Element], float]:
-    """Draw columns of blocks side by side from the left border, widths in pixels; return them and the y below the
-    longest.
+    """Draw columns of blocks side by side, starting at the left border.
+
+    The widths are in pixels. Return the elements and the y below the longest column.
     """
     parts, left, bottom = [], BORDER, top
     for blocks, width in zip(columns, widths, strict=True):

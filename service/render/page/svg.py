@@ -255,8 +255,9 @@ class Viewport:
 
     @classmethod
     def fit(cls, shown: Box, panel: Box, margin: float, foot: float = 0.0) -> Viewport:
-        """Return the viewport that shows a box of the mechanism, centred, with ``margin`` pixels (below: plus ``foot``)
-        free.
+        """Return the viewport that shows a box of the mechanism, centred in a panel.
+
+        ``margin`` pixels stay free around the box, and ``foot`` more below it.
         """
         # The scale is limited by the narrower direction.
         room = panel.width - 2.0 * margin, panel.height - 2.0 * margin - foot
@@ -281,11 +282,11 @@ class Viewport:
 
 
 CLIP_MARGIN = 20.0
-"""Lines are cut this many pixels outside their panel, so that ends and joins of wide strokes remain hidden."""
+"""Distance outside a panel at which lines are clipped, pixels: it hides the ends and joins of wide strokes."""
 
 
 MIN_STEP = 0.8
-"""Points of a polyline closer together than about this many pixels are dropped."""
+"""Approximate minimum distance between points of a polyline, pixels; closer points are dropped."""
 
 
 def _drop_close_points(line: Complex) -> Complex:

@@ -56,10 +56,10 @@ def draw_bearing(at: complex, size: float) -> tuple[Element, list[Complex]]:
 
 
 def draw_target(at: complex, angle: float | None, number: int) -> tuple[Element, list[Complex]]:
-    """Draw the ring of a target point; for a position also its body frame: a long arrow at its angle, a short line
-    across.
+    """Draw the ring of a target point, and for a target position also the body's frame.
 
-    The angle is in radians, or None for a target point.
+    The frame is a long arrow at the angle of the position and a short line across it. The angle is in radians, or None
+    for a target point.
     """
     ring = draw_circle(at, TARGET_RADIUS, fill="none", stroke=TARGET_COLOUR, stroke_width=1.6, stroke_dasharray="3 1.6")
     if angle is None:

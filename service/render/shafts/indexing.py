@@ -120,8 +120,9 @@ def _make_plane_crank(mechanism: GenevaMechanism, half: float) -> tuple[Complex,
 
 
 def _make_cap(mechanism: SphericalGenevaMechanism) -> tuple[Complex, complex]:
-    """Return the cap and the roller viewed along the crank's axis from outside, next to the wheel; the roller points
-    up.
+    """Return the outline of the cap, and the roller, viewed from outside along the crank's axis.
+
+    The view is next to that of the wheel, and the roller points up.
     """
     center = 2.4 * mechanism.sphere_radius
     radius = mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle))
@@ -145,8 +146,9 @@ def _make_crank(design: IndexingDesign) -> tuple[Complex, list[complex], complex
 
 
 def _place_links(mechanism: Mechanism, angle: float, crank: float) -> list[Complex]:
-    """Return the lines of a drag link at angles of its input and of the crank since the entry; an empty list without
-    one.
+    """Return the lines of the links of a drag link; an empty list without a drag link.
+
+    The position is given by the angles of its input and of the crank since a roller entered.
     """
     link = getattr(mechanism, "drag_link", None)
     if link is None or not isinstance(mechanism, GenevaMechanism):

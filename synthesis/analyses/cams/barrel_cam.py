@@ -1,6 +1,6 @@
-"""The analysis of a finished barrel cam: a roller is laid against both walls of its groove.
+"""Analysis of a finished barrel cam, by contact of a roller with both walls of its groove.
 
-Displacements are lengths along the axis; forces along it, the torque on the barrel.
+Displacements and forces are along the axis of the barrel; the torque acts on the barrel.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ from synthesis.model.json_object import JsonObject
 
 
 def _build_example_wall(mean: float, sign: float) -> JsonObject:
-    """Build a wall of a groove that rises and falls once per turn, for a roller of radius 8 on a cylinder of radius
-    40."""
+    """Build a wall of the groove of the example, which rises and falls once per turn.
+
+    The roller has a radius of 8, the cylinder a radius of 40. ``mean`` is the mean position along the axis; ``sign`` is
+    −1 for the lower wall and +1 for the upper wall.
+    """
     theta = [math.radians(2.0 * k) for k in range(180)]
     slope = [0.25 * math.sin(t) for t in theta]
     return {
@@ -72,7 +75,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
             raise MechanismError("/follower/roller_radius", str(error)) from None
         pressure = np.angle(lower.tangent)
         v = radius * np.tan(pressure)
-        # The pitch curve lies a roller's radius inside the wall.
+        # The pitch curve is offset from the wall by the radius of the roller, which changes its curvature.
         bend = lower.curvature / (1.0 - roller * lower.curvature)
         a = bend * np.hypot(radius, v) ** 3 / radius
         velocity, acceleration = v * speed, a * speed**2 + v * self.motion.acceleration

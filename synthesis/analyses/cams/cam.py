@@ -1,7 +1,8 @@
-"""The analysis of a finished cam: its follower is laid against the profile, and what it does is measured.
+"""Analysis of a finished cam: the motion of its follower is computed from the contact with the profile.
 
-Displacements of an oscillating follower are degrees, its rates rad/s; those of a translating one lengths and their
-rates. Forces are along the follower's motion, torques of an oscillating one about its pivot.
+Displacements of an oscillating follower are in degrees and its velocities in rad/s. Those of a translating follower are
+lengths, and lengths per second. Forces are along the follower's motion; for an oscillating follower they are torques
+about its pivot.
 """
 
 from __future__ import annotations
@@ -31,13 +32,14 @@ MAX_EFFORT = 40_000_000
 """Maximum product of positions and points of the profile: about two seconds."""
 
 PROGRAM_SAMPLE_COUNT = 1440
-"""Number of cam angles at which the program of a profile is measured for vibrations."""
+"""Number of cam angles at which the program of a profile is measured for the computation of vibrations."""
 
 MIN_POSITIONS = 24
-"""Number of positions from which a cutter's path with a chordal tolerance starts."""
+"""Number of moves of a cutter's path from which the refinement to a chordal tolerance starts."""
 
 MAX_CHORDS = 20_000
-"""Maximum number of moves of a cutter's path: a tolerance finer than the profile's own would never be met."""
+"""Number of moves of a cutter's path at which its refinement ends: a tolerance finer than the profile itself would
+never be met."""
 
 
 class Load(Statement):
@@ -90,7 +92,7 @@ EXAMPLE: JsonObject = {
         "y": [round(30.0 * math.sin(math.radians(6 * k)), 9) for k in range(60)],
     },
 }
-"""A circle that turns about a point off its centre."""
+"""Example: a circle that turns about a point off its centre."""
 
 
 class CamAnalysisRequest(DrivenRequest[GivenCam]):
@@ -117,7 +119,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
     cutter: Cutter | None = None
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.train is not None and self.motion.rate <= 0.0:
             faults.append(("/motion/speed", "a vibration needs a positive speed"))
@@ -162,7 +164,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         }
 
     def _measure_play(self, follower: Follower, at: Real, s: Real, unit: float) -> list[float] | None:
-        """How far the roller can move between the walls of its groove."""
+        """Compute the play of the roller between the walls of its groove; None for an open cam."""
         wall = self.mechanism.build_wall()
         if wall is None:
             return None
@@ -173,7 +175,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         return [float(gap) for gap in (outer - s) * unit]
 
     def _compute_response(self, contour: Contour, follower: Follower, at: Real) -> JsonObject:
-        """The steady vibration at the motion's cam angles."""
+        """Compute the steady vibration of the elastic follower at the cam angles ``at``, degrees."""
         assert self.train is not None, "needs `train`"
         program = measure_program(contour, follower, self.mechanism.rotation, PROGRAM_SAMPLE_COUNT)
         vibration = Response(program, self.train.build_core(), self.motion.rate)
@@ -191,7 +193,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         }
 
     def _compute_cutter_path(self, contour: Contour, follower: Follower, at: Real) -> JsonObject:
-        """Centres of the cutter at the motion's angles, or at angles as close as the tolerance asks."""
+        """Compute centres of the cutter at the cam angles ``at``, degrees, or as close as the tolerance requires."""
         assert self.cutter is not None, "needs `cutter`"
         cutter, rotation = self.cutter, self.mechanism.rotation
 
@@ -204,11 +206,13 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
             theta = space_angles(MIN_POSITIONS)
             theta = np.append(theta, math.tau)
             path = compute_centres(theta)
+            # Halve every step whose chord deviates too far from the path, until none does.
             while len(theta) < MAX_CHORDS:
                 middle = 0.5 * (theta[:-1] + theta[1:])
                 between = compute_centres(middle)
                 chord = np.diff(path)
                 length = np.abs(chord)
+                # Distance of the middle point from the chord; if the chord has no length, from its end.
                 off = np.abs(((between - path[:-1]) * np.conj(chord)).imag) / np.where(length > 0.0, length, 1.0)
                 coarse = np.where(length > 0.0, off, np.abs(between - path[:-1])) > cutter.chordal_tolerance
                 if not coarse.any():
@@ -231,7 +235,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 def compute_force_series(
     load: Load, s: Real, v: Real, pressure_angle: Real, velocity: Real, acceleration: Real
 ) -> dict[str, list[float]]:
-    """Compute forces along the follower's motion and between the surfaces, and the torque on the camshaft."""
+    """Compute the forces along the follower's motion and between the surfaces, and the torque on the camshaft."""
     inertia = load.mass * acceleration + load.damping * velocity
     force = inertia + load.spring_rate * s + load.preload
     return {
@@ -242,13 +246,13 @@ def compute_force_series(
 
 
 def _find_min_radius(contour: Contour, side: float) -> float | None:
-    """Find the minimum radius of the convex (1) or hollow (−1) parts; None without any."""
+    """Find the minimum radius of curvature of the convex (``side`` 1) or hollow (−1) parts; None if there are none."""
     greatest = float((side * contour.curvature()).max())
     return 1.0 / greatest if greatest > FLAT / float(np.abs(contour.points).max()) else None
 
 
 FLAT = 1e-6
-"""Curvature times size below which a profile is straight."""
+"""Curvature times size of a profile up to which it counts as straight."""
 
 
 class FollowerSeries(Answer):

@@ -1,4 +1,4 @@
-"""The analysis of several cams on one shaft: total torque, its mean, and the flywheel that evens the speed."""
+"""Analysis of several cams on one shaft: total torque, its mean, and the flywheel that limits the speed fluctuation."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.motion.rate <= 0.0:
             faults.append(("/motion/speed", "the shaft needs a positive speed"))

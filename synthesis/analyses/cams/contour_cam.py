@@ -1,4 +1,4 @@
-"""The analysis of a cam of specified contour: eccentric circle, circular arcs, straight flanks."""
+"""Analysis of cams of specified contour: eccentric circles, and noses with circular or straight flanks."""
 
 from __future__ import annotations
 

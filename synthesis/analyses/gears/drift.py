@@ -1,4 +1,4 @@
-"""Drift of a train from its required ratio, as of a clock: seconds per day."""
+"""Drift of a gear train from its required ratio, in seconds per day, as for a clock."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.model.json_object import JsonObject
 SECONDS_PER_DAY = 86_400.0
 
 ENCLOSURE_BITS = 256
-"""Number of bits of the required ratio's enclosure: errors are correct to all digits of a float."""
+"""Number of bits of the enclosure of the required ratio, with which errors are correct to all digits of a float."""
 
 WANTED_DESCRIPTION = (
     "Required ratio of the train, a number or an exact expression such as `354375/12000`. The answer then has "
@@ -34,16 +34,16 @@ class Drift(Answer):
 
 
 def describe_drift(ratio: Fraction | None, wanted: float | str | None) -> JsonObject:
-    """Return the field ``drift`` for a train of exactly this ratio; empty without a required ratio."""
+    """Return the field ``drift`` for a train with exactly this ratio; empty if no ratio is required or known."""
     if ratio is None or wanted is None:
         return {}
     sign, target = parse_target(wanted)
-    # A train without motion has no meaningful drift.
+    # A ratio of 0 has no meaningful drift.
     if ratio == 0:
         return {}
     low, high = target.enclose(ENCLOSURE_BITS)
     exact = target.rational or (low + high) / 2
-    # The output turns by 1/ratio of the input: of a ratio that is too small it has turned too far.
+    # The output turns by 1/ratio of the input, so with too small a ratio it turns too far.
     gained = exact / abs(ratio) - 1
     seconds = float(gained * Fraction(SECONDS_PER_DAY))
     entries: JsonObject = {

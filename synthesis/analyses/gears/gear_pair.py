@@ -1,7 +1,7 @@
-"""Analyses of pairs of helical gears (parallel or crossed), of bevel gears and of a worm with its gear: dimensions.
+"""Dimensions of pairs of helical gears (on parallel or crossed shafts), of bevel gears, and of a worm with its gear.
 
-The pairs are not part of a train; the speed of the first gear determines the other. Lengths are in the unit of the
-module, the millimetre by default.
+The pairs are not part of a train; the speed of the first gear determines that of the second. Lengths are in the unit of
+the module, by default millimetres.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from synthesis.model.problem import Number, PositiveNumber, Statement
 RAD_PER_S_PER_RPM = 2.0 * math.pi / 60.0
 
 MILLIMETRE = {"mm": 1.0, "cm": 0.1, "m": 0.001, "in": 1.0 / 25.4}
-"""One millimetre in each unit."""
+"""Length of one millimetre in each length unit."""
 
 BEVEL_TEETH = {"rao": RAO_TEETH, "gleason": GLEASON_TEETH}
 
@@ -46,7 +46,13 @@ class GivenHelicalPair(Statement):
     face_width: PositiveNumber | None = None
 
     def build_gears(self) -> tuple[HelicalGear, HelicalGear]:
-        """Build both gears; raises MechanismError if the second helix angle is too large."""
+        """Build both gears.
+
+        Raises
+        ------
+        MechanismError
+            If the second helix angle is too large.
+        """
         second = self.shaft_angle - self.helix_angle
         if not abs(second) < 85.0:
             raise MechanismError("/helix_angle", f"the second gear would need a helix angle of {second:g}°")
@@ -128,7 +134,7 @@ class _PairRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
-        """Build the answer at any input; jobs return no such pairs as designs."""
+        """Build the answer, which does not depend on the input; no design is such a pair."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
 
@@ -187,7 +193,7 @@ class BevelPairRequest(_PairRequest):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List the error of a gear that is smaller than its pinion."""
+        """Return an error if the gear has fewer teeth than its pinion."""
         if self.mechanism.teeth[0] > self.mechanism.teeth[1]:
             return [("/mechanism/teeth", "give the pinion first; the gear has at least as many teeth")]
         return []

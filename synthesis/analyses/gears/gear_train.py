@@ -1,10 +1,10 @@
-"""The analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
+"""Analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
 
-Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
-transmits a given share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
-torque against the speed of the input takes power out there: the output drives and supplies the losses, too. A worm
-transmits the share that its own friction permits, regardless of the other meshes: its forces follow from that friction,
-and so must its torques.
+Speeds are exact fractions of the input speed. The torque on a shaft is the power that reaches it, divided by its speed.
+Each mesh transmits a given share of the power, or 1 − μ H with the coefficient of friction μ and the loss factor H of
+its teeth. If the input torque opposes the input speed, power leaves at the input: the output drives and also supplies
+the losses. A worm always transmits the share that follows from its own friction, because its forces follow from that
+friction, and its torques must be consistent with them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number
 
 DISTANCE_TOLERANCE = 1e-6
-"""Relative tolerance of a given centre distance against that of the teeth."""
+"""Relative tolerance for the comparison of a given centre distance with that of the teeth."""
 
 
 class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
@@ -85,7 +85,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
@@ -109,19 +109,19 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
 
     @property
     def list_locked_worms(self) -> list[int]:
-        """Stages, from 0, whose worms transmit no power, driven by the worm or by the gear."""
+        """Indices, from 0, of the stages whose worms transmit no power in the direction of the power flow."""
         shares = list_power_shares(self)
         return [k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares[k]]
 
     def _find_locking_errors(self) -> list[tuple[str, str]]:
-        """List errors of meshes that friction locks although there is a torque."""
+        """Return errors of meshes that friction locks although there is a torque."""
         if self.input_torque == 0.0:
-            # Without torque friction locks nothing, and speeds can be analyzed all the same.
+            # Without a torque, friction locks nothing, and the speeds can still be analyzed.
             return []
         worms, back = self.list_locked_worms, self.has_backward_flow
         detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear at any torque"
         faults = [(f"/mechanism/stages/{k}/friction", f"with this friction {detail}") for k in worms]
-        # Only a reversed flow divides by the shares; forwards a share of 0 merely leaves an output torque of 0.
+        # Only a reversed power flow divides by the shares. In forward flow, a share of 0 gives an output torque of 0.
         if back and not worms and any(0.0 in stage for stage in list_power_shares(self)):
             detail = "with this friction a mesh loses all power, so that the output cannot drive"
             faults.append(("/friction", detail))
@@ -129,14 +129,14 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
 
     @classmethod
     def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
-        """Build the answer over a cycle, without a load if friction locks a worm."""
+        """Build the answer over a cycle, without a torque if friction locks a worm."""
         request = cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}})
-        # The default torque of 1 would be rejected for a locked worm, so analyze such a train without it.
+        # With the default torque of 1 a train with a locked worm would be rejected, so analyze it without a torque.
         return request.model_copy(update={"input_torque": 0.0} if request.list_locked_worms else {}).build_answer()
 
     @property
     def has_backward_flow(self) -> bool:
-        """Whether power leaves at the input at the first position: the output drives."""
+        """Whether power leaves at the input at the first position, so that the output drives."""
         return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
 
     def _find_strength_errors(self) -> list[tuple[str, str]]:
@@ -154,7 +154,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             for number, stage in enumerate(self.mechanism.stages)
             if stage.type not in RATED_STAGE_TYPES
         ]
-        # Power sizes the faces; with a torque or a speed of zero every face would do.
+        # The faces are sized by the power; without power any face would suffice.
         if self.input_torque == 0.0 or float(self.motion.list_inputs()[1][0]) == 0.0:
             faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
         if stated.allowable_bending is None and stated.allowable_contact is None:
@@ -181,13 +181,13 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         ]
 
     def _find_face_errors(self) -> list[tuple[str, str]]:
-        """List errors of bevel gears whose faces would extend beyond the apex of their cones."""
+        """Return errors of bevel gears whose faces would extend to the apex of their cones or beyond."""
         angle = math.radians(self.mechanism.pressure_angle)
         faults = []
         for number, stage in enumerate(self.mechanism.stages):
             if stage.type == "bevel" and stage.face_width is not None:
                 far = build_train_stage(stage, angle).cones(angle).cone_distance
-                # The negation also rejects a face as wide as the cone distance, where the teeth would end in a point.
+                # A face as wide as the cone distance is refused, too, because its teeth would end in a point.
                 if not stage.face_width < far:
                     detail = f"expected less than the cone distance of these gears, {far:.6g}"
                     faults.append((f"/mechanism/stages/{number}/face_width", detail))
@@ -241,11 +241,11 @@ def _analyze_train(request: GearTrainAnalysisRequest) -> JsonObject:
     at, speed, time = request.motion.list_inputs()
     train = request.mechanism.build_train()
     shares = list_power_shares(request)
-    # A mesh that cannot run passes torque without loss, so that the answer still shows torques; efficiency is None
-    # then.
+    # A mesh that cannot run passes torque without loss, so that the answer still contains torques; the efficiency is
+    # then None.
     passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
     known = all(share is not None for stage in shares for share in stage)
-    # With reversed flow the input receives less than the output supplies: torques grow towards the output.
+    # With reversed flow, the input receives less power than the output supplies, so torques grow towards the output.
     gained = tuple(tuple(1.0 / share for share in stage) for stage in passed) if request.has_backward_flow else passed
     torques = train.torques(request.input_torque, gained)
     flow = Flow(
@@ -270,13 +270,13 @@ def _analyze_train(request: GearTrainAnalysisRequest) -> JsonObject:
 
 
 def _clean_axis(axis: Real) -> tuple[float, ...]:
-    """Round an axis, so that right angles leave no rounding errors."""
+    """Round the components of an axis, to remove the rounding errors of right angles."""
     # Adding zero turns −0.0 into 0.0.
     return tuple(round(float(part), 15) + 0.0 for part in axis)
 
 
 def list_power_shares(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ...], ...]:
-    """List the share of the power that each mesh of each stage transmits; None for one that cannot run."""
+    """Return the share of the power that each mesh of each stage transmits; None for a mesh that cannot run."""
     train = request.mechanism.build_train()
     return tuple(
         (_compute_worm_share(request, stage, train),)
@@ -287,7 +287,7 @@ def list_power_shares(request: GearTrainAnalysisRequest) -> tuple[tuple[float | 
 
 
 def _compute_worm_share(request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain) -> float:
-    """Compute the share of the power that a worm, or its driving gear, transmits; 0 if friction locks it."""
+    """Compute the share of the power that a worm set transmits in the direction of the flow; 0 if friction locks it."""
     worm = stage.worm(train.pressure_angle)
     return worm.back_efficiency(stage.friction) if request.has_backward_flow else worm.efficiency(stage.friction)
 
@@ -299,7 +299,7 @@ def _compute_share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | Non
         return None
     if request.mesh_efficiency is not None:
         return request.mesh_efficiency
-    # Large friction can make the estimate negative; a share below 0 has no meaning.
+    # Large friction can make the estimate negative, but a share below 0 has no meaning.
     return max(0.0, 1.0 - request.friction * mesh.loss_factor)
 
 
@@ -326,8 +326,7 @@ def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[JsonO
         return _describe_worm_stage(stage.worm(train.pressure_angle))
     if stage.kind == "bevel":
         pair = stage.cones(train.pressure_angle)
-        # Undercut of bevel gears is that of the virtual gears of the back cones, which the mesh sorts by tooth
-        # number.
+        # Bevel gears are undercut if the virtual gears of their back cones are, which the mesh sorts by tooth number.
         virtual = sorted((meshes[0].pinion, meshes[0].gear), key=lambda gear: gear.teeth)
         ordered = virtual if stage.driver <= stage.driven else virtual[::-1]
         return [
@@ -335,26 +334,26 @@ def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[JsonO
             for gear, back, cone in zip(cut, ordered, pair.cones, strict=True)
         ]
     if stage.shifts != (0.0, 0.0):
-        # A shifted stage has one mesh, which knows its undercut.
+        # A shifted stage has a single mesh.
         helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
         undercut = list(find_undercut(meshes[0], helix))[:: 1 if stage.driver <= stage.driven else -1]
     elif stage.kind == "helical":
         undercut = [gear.is_undercut for gear in cut]
     else:
-        # Idlers can shorten teeth, but the rack's depth, which undercuts, is always the full one.
+        # Teeth may be shortened, but undercut depends on the depth of the rack, which is always the full one.
         undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
     return [_describe_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
 
 
 def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> JsonObject:
-    """Describe a gear; bevel teeth extend from the axis by ``slope``, the cosine of the cone, times their height."""
+    """Describe the dimensions of a gear; ``slope`` is the cosine of the cone angle of a bevel gear, otherwise 1."""
     radii = gear.pitch_radius, gear.tip_radius, gear.root_radius
     # Bevel teeth extend along the back cone, inclined to the axis by the cone angle.
     tip, root = (radii[0] + slope * (radius - radii[0]) for radius in radii[1:])
     return {
         "module": gear.module,
         "pitch_diameter": 2.0 * gear.pitch_radius,
-        # For parallel axes take the gear's radii as they are: the formula with slope 1 would add rounding errors.
+        # For parallel axes use the radii of the gear directly, because the formula with slope 1 adds rounding errors.
         "outside_diameter": 2.0 * (gear.tip_radius if slope == 1.0 else tip),
         "root_diameter": 2.0 * (gear.root_radius if slope == 1.0 else root),
         "base_diameter": 2.0 * gear.base_radius,
@@ -364,7 +363,7 @@ def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> Json
 
 
 def _describe_worm_stage(worm: WormDrive) -> list[JsonObject]:
-    """Describe the worm, with its thickness along the axis, and its gear in the middle plane."""
+    """Describe the worm, with its tooth thickness along the axis, and its gear in the middle plane."""
     diameter, module = worm.dimensions.worm_diameter, worm.module
     threads = {
         "module": module,

@@ -1,4 +1,4 @@
-"""Analyses of gearboxes: speeds of all shafts with given pairs engaged, and all possible output speeds."""
+"""Analyses of gearboxes: speeds of all shafts with the given pairs engaged, and all possible output speeds."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
@@ -175,7 +175,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
     gear: Annotated[int, Field(strict=True, ge=1, le=12)] | Literal["reverse"] = 1
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
@@ -216,7 +216,11 @@ def _build_answer(
     ratios: list[tuple[str, Fraction]],
     speeds: list[tuple[list[int], Fraction]],
 ) -> JsonObject:
-    """Build the answer common to both kinds of gearbox."""
+    """Build the answer, which has the same form for both kinds of gearbox.
+
+    ``ratios`` are the speeds of the shafts over that of the input, by name; ``speeds`` are the choices of engaged pairs
+    with their output speeds.
+    """
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),

@@ -1,4 +1,4 @@
-"""A planetary train as a client gives it: a known arrangement with its teeth, or a list of meshes."""
+"""Models of a given planetary train: a known arrangement with its teeth, or a list of meshes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.analyses.gears.given_train import GivenRatio
 from synthesis.model.problem import Flag, PositiveNumber, Statement
 
 MAX_MESHES = 8
-"""Maximum number of meshes: directions of power are tried mesh by mesh, 2^8 combinations at worst, in half a second."""
+"""Maximum number of meshes. The directions of power are tried in all combinations: at most 2⁸, in half a second."""
 
 ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 Body = Annotated[str, Field(min_length=1, max_length=40)]
@@ -79,14 +79,16 @@ class GivenPlanetaryTrain(Statement):
         return Train(tuple(rows), frozenset(self.planet_bodies))
 
     def compute_ratio(self) -> Fraction | None:
-        """Compute input over output speed with the fixed member at rest; None if a member is not given or none
-        follows."""
+        """Compute the ratio of input speed to output speed, with the fixed member at rest.
+
+        Return None if one of the three members is not given, or if the ratio is undetermined.
+        """
         if self.input is None or self.output is None or self.fixed is None:
             return None
         return compute_speed_ratio(self.build_train(), self.input, self.output, [self.fixed])
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         if self.meshes is not None:
             if self.arrangement is not None or self.teeth is not None:
                 return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]

@@ -1,4 +1,4 @@
-"""A given ordinary gear train: its stages, its idlers, and optionally its ratio."""
+"""Models of a given ordinary gear train: its stages, its idlers, and optionally its ratio."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from synthesis.model.gears.stages import MAX_THREADS, StageType, build_train_sta
 from synthesis.model.problem import Number, PositiveNumber, Statement
 
 RATIO_TOLERANCE = 1e-9
-"""Relative tolerance of a ratio's decimal value against its numerator and denominator."""
+"""Relative tolerance for the comparison of a ratio's decimal value with its numerator and denominator."""
 
 
 class GivenShifts(Statement):
@@ -75,7 +75,7 @@ class GivenStage(StageType):
         return driver
 
     def find_type_errors(self) -> list[tuple[str, str]]:
-        """List fields of other types, and gears that this type does not permit, by their path below the stage."""
+        """Return errors of fields and gears that the type does not permit, as pairs (path in the stage, detail)."""
         faults = super().find_type_errors()
         if self.type not in ("external", "helical") and self.shift is not None:
             faults.append(("/shift", f"a stage that is {self.type} has no shift"))
@@ -87,7 +87,7 @@ class GivenStage(StageType):
 
     @classmethod
     def list_types_with(cls, name: str) -> tuple[StageKind, ...]:
-        """List the types of stages with a field; a face width belongs to all types with rated forces."""
+        """Return the types of stages that have the field ``name``; all types with rated forces have a face width."""
         return ("external", "internal", "helical", "bevel") if name == "face_width" else super().list_types_with(name)
 
 
@@ -106,7 +106,7 @@ class GivenRatio(Statement):
     value: Number
 
     def find_errors(self, ratio: Fraction) -> list[tuple[str, str]]:
-        """List the error of a ratio that differs from that of the teeth."""
+        """Return an error if the ratio differs from ``ratio``, that of the teeth."""
         same = self.numerator == ratio * self.denominator
         if same and math.isclose(self.value, float(ratio), rel_tol=RATIO_TOLERANCE):
             return []

@@ -1,4 +1,4 @@
-"""The meshes of an ordinary gear train under load: contact, forces and stresses, at one speed of the input."""
+"""Meshes of an ordinary gear train under load: contact, forces and stresses, at one speed of the input."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from synthesis.model.json_object import JsonObject
 
 @dataclass(frozen=True)
 class Flow:
-    """Power on its way through a train.
+    """Power flow through a gear train.
 
     Parameters
     ----------
     train : OrdinaryTrain
     shares : tuple of tuple of float or None
-        Share of the power that each mesh of each stage passes on; None of one that cannot run.
+        Share of the power that each mesh of each stage transmits; None for a mesh that cannot run.
     torques : tuple of float
-        On the input shaft and on the shaft behind each stage, N m.
+        Torques on the input shaft and on the output shaft of each stage, N·m.
     speed : float
-        Of the input, rad/s.
+        Speed of the input, rad/s.
     flows_back : bool
         Whether the output drives.
     unit : float
-        Of the lengths of the train, metres.
+        Length unit of the train, metres.
     """
 
     train: OrdinaryTrain
@@ -86,15 +86,15 @@ class LoadedMesh(MeshGeometry):
 
 
 def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]) -> list[JsonObject]:
-    """List every mesh with its contact, its forces and its stresses, in the form of :class:`LoadedMesh`.
+    """Return every mesh with its contact, its forces and its stresses, in the form of :class:`LoadedMesh`.
 
     Parameters
     ----------
     flow : Flow
     strength : StrengthMethod or None
-        Method of the stresses, which are left out without it.
+        Strength method; without it stresses are left out.
     widths : sequence of float or None
-        Face width of each stage, if given; length units.
+        Face width of each stage, length units; None if it is not given.
     """
     train = flow.train
     geometries = iter(describe_meshes(train))
@@ -107,10 +107,10 @@ def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequ
             worm_mesh = _describe_loaded_worm(flow, stage, torque, float(turns[0]) * flow.speed)
             loaded.append({**next(geometries).model_dump(), **worm_mesh, "efficiency": efficiencies[0]})
             continue
-        # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
-        # drives: where the output does, a mesh has lost its share before its force reaches the driver.
+        # The tangential force is that on the driving gear. It passes through idlers, and each mesh reduces it by its
+        # losses. If the output drives, the force at each mesh is larger than that on the gear towards the input.
         radius = _compute_force_radius(stage, train)
-        # Shifted gears run on working circles, which are larger than the pitch circles by the ratio of the distances.
+        # Shifted gears run on working circles, whose radii are those of the pitch circles times the ratio of distances.
         if stage.shifts != (0.0, 0.0):
             radius *= meshes[0].centre_distance / meshes[0].standard_distance
         force = abs(torque) / (radius * flow.unit)
@@ -122,7 +122,7 @@ def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequ
                 force /= passed
             on_pitch_circle = stage.shifts == (0.0, 0.0) and stage.kind == "external"
             pitch_radius = 0.5 * stage.module * driver if on_pitch_circle else radius
-            # The mesh counts its approach for the smaller gear as driver; with a larger driver the two change places.
+            # Approach and recess of the mesh are defined with the smaller gear driving; otherwise they change places.
             approach, recess = (mesh.approach, mesh.recess)[:: 1 if driver <= driven else -1]
             loaded.append(
                 {
@@ -144,8 +144,7 @@ def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequ
                 power = force * abs(float(turn) * flow.speed) * flow.unit * 0.5 * stage.module * driver
                 if stage.shifts != (0.0, 0.0):
                     power *= mesh.centre_distance / mesh.standard_distance
-                # The helical pitch circle is that of the plane of rotation, larger than module times teeth by the
-                # cosine.
+                # The pitch diameter of a helical gear is the normal module times the teeth, divided by the cosine.
                 power /= math.cos(stage.helix_angle)
                 turning = abs(float(turn) * flow.speed)
                 loaded[-1]["strength"] = _describe_strength(
@@ -157,23 +156,26 @@ def list_loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequ
 
 
 def _compute_force_radius(stage: TrainStage, train: OrdinaryTrain) -> float:
-    """Compute the radius of the driver at which the force of an unshifted stage acts."""
+    """Compute the radius at which the tangential force of an unshifted stage acts on the driver, length units."""
     if stage.kind == "helical":
         return 0.5 * stage.module * stage.driver / math.cos(stage.helix_angle)
     radius = 0.5 * stage.module * stage.driver
     if stage.kind == "bevel" and stage.face_width is not None:
-        # The resultant of a bevel gear's face acts at its middle, nearer to the axis than the outer pitch circle.
+        # The force on a bevel gear acts in the middle of the face, nearer to the axis than the outer pitch circle.
         radius -= 0.5 * stage.face_width * math.sin(stage.cones(train.pressure_angle).cones[0])
     return radius
 
 
 def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> JsonObject:
-    """Compute axial forces of helical and bevel gears, and radial ones of the latter, for a tangential force."""
+    """Compute the axial forces of helical gears, or the axial and radial forces of bevel gears, in form of fields.
+
+    ``force`` is the tangential force, N; ``way`` is the sign of the thrust of helical gears.
+    """
     if stage.kind == "helical":
         axial = force * math.tan(stage.helix_angle) * way
         return {"axial_force": {"driver": axial, "driven": -axial}}
     if stage.kind == "bevel":
-        # The separating force acts at right angles to the pitch cone, so the cone angles divide it.
+        # The separating force is normal to the pitch cone, so the cone angle resolves it into radial and axial parts.
         apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
         return {
             "radial_force": apart * math.cos(one),
@@ -184,17 +186,16 @@ def _compute_side_forces(stage: TrainStage, train: OrdinaryTrain, force: float, 
 
 
 def _describe_loaded_worm(flow: Flow, stage: TrainStage, torque: float, turning: float) -> JsonObject:
-    """Describe contact in the middle plane and forces of a worm and its gear."""
+    """Describe the contact of a worm and its gear in the middle plane, and their forces."""
     worm, friction = stage.worm(flow.train.pressure_angle), stage.friction
-    # If the gear drives, friction acts against its motion.
+    # If the gear drives, the friction acts in the opposite direction.
     sign = -1.0 if flow.flows_back else 1.0
     forces = worm.forces(abs(torque) / flow.unit, sign * friction)
     return {
         "path_of_contact": worm.approach + worm.recess,
         "approach": worm.approach,
         "recess": worm.recess,
-        # The gear of a worm is cut with full-depth teeth; the difference of addendum and dedendum is left between
-        # them.
+        # Both have full-depth teeth, so the clearance is the difference of dedendum and addendum.
         "clearance": (FULL_DEPTH_DEDENDUM - FULL_DEPTH_ADDENDUM) * worm.module,
         "pitch_line_velocity": abs(turning) * 0.5 * worm.dimensions.worm_diameter,
         "tangential_force": forces.gear,
@@ -212,7 +213,7 @@ def _describe_strength(
     power: float,
     turning: float,
 ) -> JsonObject:
-    """Describe the stresses of one mesh of a stage, its gears in the order of the power flow, in millimetres."""
+    """Describe the stresses of a mesh of a stage, computed in millimetres, with its gears in the order of the flow."""
     unit = 1000.0 * flow.unit
     contact = build_stage_contact(stage, place, flow.train.pressure_angle, unit)
     ways = mark_idlers(stage, place)

@@ -1,4 +1,4 @@
-"""Strength of a given planetary train: the required fields of the design, and the load of every mesh in motion."""
+"""Strength of a given planetary train: the fields of the design that it needs, and the load of every mesh."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class StrengthTrain(Statement):
     addendum: dict[str, Share] = Field(default={})
 
     def build_gears(self, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, Gear]:
-        """Build the gears by name, in the module's unit."""
+        """Build the gears by name, in the unit of the module."""
         return {
             name: Gear(
                 count,
@@ -46,7 +46,13 @@ class StrengthTrain(Statement):
 
 
 def parse_strength_train(mechanism: GivenPlanetaryTrain) -> StrengthTrain:
-    """Extract the fields that strength needs from a mechanism; raises pydantic's ValidationError if one is missing."""
+    """Extract the fields of a mechanism that the strength needs.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If a field is missing.
+    """
     stated = {name: getattr(mechanism, name) for name in StrengthTrain.model_fields}
     return StrengthTrain.model_validate({name: value for name, value in stated.items() if value is not None})
 
@@ -97,16 +103,16 @@ def describe_mesh_strengths(
 ) -> list[JsonObject | None]:
     """Describe the strength of every mesh in the form of ``PairStrength``; None for an unloaded mesh.
 
-    ``rates`` are speeds over the input's, ``speed`` is the input's, rad/s.
+    ``rates`` are the speeds of all bodies over that of the input; ``speed`` is that of the input, rad/s.
     """
     assert mechanism.arrangement is not None
     assert mechanism.teeth is not None
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     loads = []
     for mesh, load in zip(train.meshes, flow.meshes, strict=True):
-        # Teeth roll at the speed relative to the carrier; a member whose speed is not determined counts as at rest.
+        # Teeth roll at the speed relative to the carrier. A body whose speed is undetermined counts as at rest.
         past = (rates[mesh.first] or Fraction(0)) - (rates[mesh.carrier] or Fraction(0))
-        # The direction is in the torques, so the input's speed enters by its size only.
+        # The torques contain the direction, so only the magnitude of the input speed is used.
         loads.append(MeshLoad((float(load.first_torque), float(load.second_torque)), float(past) * abs(speed)))
     whole = parse_strength_train(mechanism)
     gears = whole.build_gears(arrangement, mechanism.teeth)

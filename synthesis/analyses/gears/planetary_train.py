@@ -1,7 +1,7 @@
-"""The analysis of a planetary train: speeds, freedoms, torques, powers, efficiency, for any arrangement.
+"""Analysis of a planetary train of any arrangement: speeds, degrees of freedom, torques, powers and efficiency.
 
-A train is a known arrangement with its teeth, as in a design, or the client's own list of meshes: rows of gears on
-bodies with the carriers of their axes. Speeds are exact; contradictions and undetermined speeds are reported.
+A train is a known arrangement with its teeth, as in a design, or the client's own list of meshes, each with the bodies
+of its gears and the carrier of their axes. Speeds are exact. Contradictory and undetermined speeds are reported.
 """
 
 from __future__ import annotations
@@ -103,12 +103,12 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = [*self.mechanism.find_errors(), *super().find_errors()]
         return faults or self._find_unknown_bodies()
 
     def _find_unknown_bodies(self) -> list[tuple[str, str]]:
-        """List names in speeds, clutches, torques and loads that the train lacks."""
+        """Return errors of names in speeds, clutches, torques and loads that the train lacks."""
         train = self.mechanism.build_train()
         named = [
             *((f"/speeds/{body}", body) for body in self.speeds or ()),
@@ -131,7 +131,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         return faults or [*self._find_table_errors(), *self._find_ratio_errors(), *self._find_strength_errors()]
 
     def _find_strength_errors(self) -> list[tuple[str, str]]:
-        """Return missing fields if the strength is requested."""
+        """Return errors of missing or unsuitable fields if the strength is requested."""
         if self.strength is None:
             return []
         faults = find_strength_errors(self.mechanism, self.strength)
@@ -178,7 +178,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         return faults
 
     def _list_elements(self) -> list[GivenElement]:
-        """List the elements of the shift table of a valid request."""
+        """Return the elements of the shift table of a valid request."""
         if self.elements is not None:
             return self.elements
         return list_default_elements(
@@ -186,7 +186,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         )
 
     def build_table(self) -> list[JsonObject]:
-        """Build the shift table."""
+        """Build the shift table of a valid request."""
         mechanism = self.mechanism
         train = mechanism.build_train()
         return build_shift_table(
@@ -252,10 +252,10 @@ class PlanetaryAnalysis(DrivenAnalysis):
 
 
 def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
-    """Compute speeds of all bodies, and torques and powers if the speeds are complete."""
+    """Compute the speeds of all bodies, and torques and powers if all speeds are determined."""
     at, speed, time = request.motion.list_inputs()
     mechanism, train = request.mechanism, request.mechanism.build_train()
-    # Known speeds are in the client's unit and need no motion; otherwise the input turns at speed 1 and is scaled.
+    # Given speeds are in the client's unit and need no motion. Otherwise the input turns at speed 1, and all is scaled.
     turning = request.speeds is None and mechanism.input is not None
     known = {body: parse_decimal(value) for body, value in (request.speeds or {}).items()}
     if turning:
@@ -263,8 +263,8 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
         known = {**held, str(mechanism.input): Fraction(1)}
     solution = solve_speeds(train, known, request.locked)
     complete = solution.open == 0 and solution.contradiction is None
-    # The direction of power follows from the torques and the speeds at the first position of the motion.
-    # Torques are solved for an input speed of ±1: only its sign decides which member of a mesh drives.
+    # The direction of the power follows from the torques and the speeds at the first position of the motion. The power
+    # flow is solved for an input speed of ±1, because only its sign decides which gear of a mesh drives.
     backwards = turning and float(speed[0]) < 0.0
     flow = _compute_flow(request, train, solution, known, -1 if backwards else 1) if complete else None
     unit = abs(float(speed[0])) if turning else 1.0
@@ -284,7 +284,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
             }
         )
     asked: JsonObject = {"shift_table": request.build_table()} if request.include else {}
-    # Without loads in the meshes no strength is described, but each mesh keeps its place in the list.
+    # Without a power flow no strength is described, but each mesh keeps its place in the list.
     strong: list[JsonObject | None] = [None] * len(train.meshes)
     if request.strength is not None and flow is not None:
         drive = request.mechanism, request.strength, train, solution.values, flow, float(speed[0])
@@ -316,7 +316,7 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
 def _describe_body(
     train: Train, flow: PowerFlow | None, body: str, rate: Fraction | None, input_speed: float
 ) -> JsonObject:
-    """Return speed, torque and power of a body; ``rate`` is its speed over the input's."""
+    """Describe speed, torque and power of a body; ``rate`` is its speed over that of the input."""
     loaded = flow is not None and body not in train.planets
     return {
         "name": body,
@@ -329,7 +329,7 @@ def _describe_body(
 
 
 def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_speed: float) -> JsonObject:
-    """Return torques and powers of a mesh; ``input_speed`` is positive."""
+    """Describe torques and powers of a mesh; ``input_speed`` is the magnitude of the input speed."""
     mesh = train.meshes[number]
     loads = None if flow is None else flow.meshes[number]
     return {
@@ -344,9 +344,8 @@ def _describe_mesh(train: Train, flow: PowerFlow | None, number: int, input_spee
 
 
 def _compute_ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fraction | None:
-    """Compute input over output speed if both are named and turn."""
+    """Compute the ratio of input speed to output speed; None if one of them is not named or the output is at rest."""
     one, other = request.mechanism.input, request.mechanism.output
-    # A ratio needs an output that turns.
     if one is None or other is None or not solution.values[other]:
         return None
     rates = solution.values[one], solution.values[other]
@@ -356,17 +355,20 @@ def _compute_ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fract
 def _compute_flow(
     request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction], sense: int
 ) -> PowerFlow | None:
-    """Compute torques and powers if the known torques determine them; None with clutches, whose torque is unknown."""
-    # The torque that a clutch transmits does not follow from speeds.
+    """Compute torques and powers if the known torques determine them.
+
+    Return None if they do not, or if there are clutches. ``sense`` is the sign of the input speed.
+    """
+    # The torque that a clutch transmits does not follow from the speeds.
     if request.locked:
         return None
     torques = {body: parse_decimal(value) for body, value in (request.torques or {}).items()}
     if request.torques is None and request.mechanism.input is not None:
-        # Without given torques use a unit torque on the input, which suffices for efficiency and power shares.
+        # Without given torques use a unit torque on the input, which suffices for the efficiency and power shares.
         torques = {request.mechanism.input: Fraction(1)}
     loads = request.loads
     if loads is None:
-        # Members that are named anywhere carry external torques by default; all others are free of them.
+        # By default, members that are named anywhere carry external torques; all others carry none.
         stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
         loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
     rates = {body: sense * rate for body, rate in solution.values.items() if rate is not None}

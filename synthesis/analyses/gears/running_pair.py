@@ -1,8 +1,8 @@
-"""The analysis of two cylindrical gears as they run: shifted, helical or spur, with an external gear or a ring.
+"""Analysis of two cylindrical gears in mesh: spur or helical, with profile shifts, both external or one a ring.
 
-All values are in the plane of rotation. External gears are cut by the rack of full-depth teeth, a ring is shaped by a
-cutter; both determine where an involute begins, and so whether contact extends into a fillet. Lengths are in the unit
-of the module.
+All values are in the plane of rotation. External gears are cut by the rack of full-depth teeth, and a ring is shaped by
+a cutter. The tools determine where the involutes begin, and so whether contact extends into a fillet. Lengths are in
+the unit of the module.
 """
 
 from __future__ import annotations
@@ -40,9 +40,20 @@ from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
 
 @dataclass(frozen=True)
 class RunningPair:
-    """Two gears in the plane of rotation, where their involutes begin, and the cutter of a ring.
+    """Two gears in mesh, in the plane of rotation.
 
-    ``undercut``: whether the rack takes away from the flanks above the base circles; a ring is shaped.
+    Attributes
+    ----------
+    contact : Contact
+        The gears at their centre distance, with the starts of their involutes.
+    tight : Mesh
+        The gears at the centre distance without play.
+    shortening : float
+        Shortening of the tips, in modules of the plane of rotation.
+    ring : ShapedRing or None
+        The second gear as shaped by its cutter, if it is a ring.
+    undercut : pair of bool
+        Whether the rack undercuts the first and the second gear; False for a ring.
     """
 
     contact: Contact
@@ -53,12 +64,12 @@ class RunningPair:
 
     @property
     def cut_gears(self) -> tuple[Gear, Gear]:
-        """Both gears as they are cut."""
+        """Both gears, as cut."""
         return self.contact.mesh.pinion, self.contact.mesh.gear
 
     @property
     def compute_root_radii(self) -> tuple[float, float]:
-        """Radii of the circles that the tools reach."""
+        """Root radii of both gears, as left by the tools."""
         one, two = self.cut_gears
         return one.root_radius, two.root_radius if self.ring is None else self.ring.root_radius
 
@@ -72,9 +83,9 @@ class RunningPair:
 
     @property
     def compute_clearance(self) -> float:
-        """The smaller clearance between a tip and the mate's root."""
+        """Minimum clearance between the tips of a gear and the root of its mate."""
         distance, (one, two), roots = self.contact.mesh.centre_distance, self.cut_gears, self.compute_root_radii
-        # In a ring the smaller gear's tips point to the ring's root, and the ring's tips to the smaller gear's root.
+        # In an internal pair, both clearances are measured on the side of the mesh.
         if two.internal:
             return min(roots[1] - distance - one.tip_radius, two.tip_radius - distance - roots[0])
         return min(distance - one.tip_radius - roots[1], distance - two.tip_radius - roots[0])
@@ -115,7 +126,7 @@ class GivenGearPair(Statement):
         Raises
         ------
         MechanismError
-            For teeth that make no pair.
+            For teeth that cannot form a pair.
         """
         try:
             return self._build_pair()
@@ -129,17 +140,17 @@ class GivenGearPair(Statement):
     def _build_pair(self) -> RunningPair:
         angle, phi = math.radians(self.helix_angle), math.radians(self.pressure_angle)
         full = self._build_gear(0, angle, phi), self._build_gear(1, angle, phi)
-        # The tight mesh keeps the full tips: shortening does not change the distance without play.
+        # The tight mesh uses unshortened tips, because shortening does not change the distance without play.
         tight = Mesh(full[0], full[1])
-        # Shifted external gears at their distance would lose clearance, so their tips are shortened by as much.
+        # Shifted external gears at their centre distance lose clearance, so their tips are shortened by this amount.
         shortening = compute_tip_shortening(Mesh(full[0], full[1], self.centre_distance))
         one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
         for gear, name in ((one, "first"), (two, "second")):
-            # Without a flank above the base circle there is no involute to run on.
+            # Without a flank above the base circle there is no involute.
             if not gear.internal and gear.tip_radius <= gear.base_radius:
                 raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
-        # The rack's straight flank ends above its rounded tip; only this depth cuts the involute. Cosine: plane of
-        # rotation.
+        # The straight flank of the rack ends above its rounded tip, and only this depth cuts the involute. The cosine
+        # converts it to modules of the plane of rotation.
         depth = compute_straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
         ring = ShapedRing(two, self._choose_cutter_teeth) if self.internal else None
         contact = apply_tool_contact(Mesh(one, two, self.centre_distance), ring, angle)
@@ -149,7 +160,7 @@ class GivenGearPair(Statement):
 
     def _build_gear(self, place: int, angle: float, phi: float) -> Gear:
         plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
-        # Shift and addendum are given in modules of the normal plane, and the gear is that of the plane of rotation.
+        # Shift and addendum are given in normal modules; convert them to modules of the plane of rotation.
         shift, ring = self.shift[place] * math.cos(angle), self.internal and place == 1
         addendum = self.addendum[place] * math.cos(angle)
         return replace(plain, addendum=addendum, shift=shift, internal=ring)
@@ -169,11 +180,11 @@ class RunningGear(Answer):
     working_pitch_diameter: float
     base_diameter: float
     tip_diameter: float
-    root_diameter: float = Field(description="Radius left by the rack, or by the cutter of a ring.")
+    root_diameter: float = Field(description="Diameter of the root circle, which the rack cuts, or the cutter of a ring.")
     form_diameter: float = Field(
-        description="Radius at which the involute ends; for an undercut gear where its fillet crosses the flank."
+        description="Diameter at which the involute ends; for an undercut gear where its fillet crosses the flank."
     )
-    tooth_thickness: float = Field(description="Value on the pitch circle.")
+    tooth_thickness: float = Field(description="Tooth thickness on the pitch circle.")
     tip_thickness: float | None = Field(description="Tip thickness; null if a ring's tips lie below its base circle.")
     least_shift: float | None = Field(description="Profile shift below which the rack undercuts; null for a ring.")
     undercut: bool
@@ -264,11 +275,11 @@ class RunningPairRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
-        """Build the answer at any input; jobs return no such pairs as designs."""
+        """Build the answer, which does not depend on the input; no design is such a pair."""
         return cls.model_validate({"mechanism": mechanism}).build_answer()
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         given, faults = self.mechanism, []
         if given.internal and given.teeth[1] <= given.teeth[0]:
             faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; give the ring second"))
@@ -351,8 +362,11 @@ class RunningPairRequest(AnalysisRequest):
 
 
 def _describe_space(pair: RunningPair, place: int, helix_angle: float) -> dict[str, list[float]] | None:
-    """Draw a space as :class:`ToothSpace`: for gear 1 next to a tooth on the line of centres, for gear 2 centred on
-    that line."""
+    """Draw a tooth space in the form of :class:`ToothSpace`; None if the rack's tooth would come to a point.
+
+    The first gear has a tooth on the line of centres, and its space is next to it. The space of the second gear is
+    centred on that line.
+    """
     gear = pair.cut_gears[place]
     try:
         half = draw_half_space(gear, helix_angle)
@@ -360,7 +374,7 @@ def _describe_space(pair: RunningPair, place: int, helix_angle: float) -> dict[s
         return None
     # Turn the space by half a pitch for the first gear, so that its tooth meets the space of the second.
     toward = math.pi / gear.teeth if place == 0 else 0.0 if gear.internal else math.pi
-    # The half is drawn from the middle of the space; mirror it for the other flank, without its first point twice.
+    # Half of the space is drawn, from its middle; mirror it for the other flank, without repeating the first point.
     points = np.concatenate([half[::-1].conj(), half[1:]]) * cmath.exp(1j * toward)
     return {"x": points.real.tolist(), "y": points.imag.tolist()}
 

@@ -1,8 +1,9 @@
-"""The shift table of a planetary train: which clutches and brakes give which ratio, and how fast all its bodies turn.
+"""Shift table of a planetary train: ratio and speeds for each choice of engaged clutches and brakes.
 
-A brake holds a member. A clutch joins two members, or the input shaft to a member. With a freedom of f the number of
-elements engaged at a time is the one that determines every speed: f − 1 if the input sits on a member, f if clutches
-connect it to one. Each such choice is a state, unless it holds the output or its elements contradict one another.
+A brake holds a member. A clutch connects two members, or the input shaft to a member. In a train with f degrees of
+freedom, every speed is determined by f − 1 engaged elements if the input shaft is fixed to a member, and by f elements
+if clutches connect it to members. Each choice of that many elements is a state, unless it holds the output or its
+elements contradict one another.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
 
 INPUT_NAME = "input"
-"""The name of the input shaft in a clutch, where the input does not sit on a member."""
+"""Name of the input shaft in a clutch, if the input shaft is not fixed to a member."""
 
 MAX_STATES = 5000
 """Maximum number of choices of engaged elements."""
@@ -42,11 +43,14 @@ class GivenElement(Statement):
 
     @property
     def list_bodies(self) -> tuple[str, ...]:
-        """The members that it acts on."""
+        """Members on which the element acts."""
         return self.clutch or (str(self.brake),)
 
     def find_driven_member(self, driving: str | None) -> str | None:
-        """Return the member that it connects to the input shaft; None if the input sits on a member of any name."""
+        """Return the member that the clutch connects to the input shaft; None if it connects none.
+
+        ``driving`` is the member to which the input shaft is fixed, or None.
+        """
         if driving is not None or self.clutch is None or INPUT_NAME not in self.clutch:
             return None
         return next((body for body in self.clutch if body != INPUT_NAME), INPUT_NAME)
@@ -65,7 +69,7 @@ class ShiftState(Answer):
 
 
 def list_default_elements(train: Train, driving: str, driven: str) -> list[GivenElement]:
-    """A brake on every member but input and output, and a clutch between any two members."""
+    """Return the default elements: a brake on every member except input and output, and a clutch between any two."""
     brakes = [GivenElement(name=f"brake {body}", brake=body) for body in train.members if body not in (driving, driven)]
     clutches = [
         GivenElement(name=f"clutch {one}-{other}", clutch=(one, other))
@@ -75,7 +79,7 @@ def list_default_elements(train: Train, driving: str, driven: str) -> list[Given
 
 
 def find_element_errors(train: Train, driving: str | None, elements: Sequence[GivenElement]) -> list[tuple[str, str]]:
-    """Return errors of the given elements, by their index in the request."""
+    """Return errors of the given elements, as pairs (JSON pointer, detail)."""
     faults = []
     known = [*train.members, *([INPUT_NAME] if driving is None and INPUT_NAME not in train.members else [])]
     for k, element in enumerate(elements):
@@ -121,13 +125,13 @@ def build_shift_table(
     ----------
     train : Train
     driving : str or None
-        The member on the input shaft; None if clutches connect it.
+        Member that is fixed to the input shaft; None if clutches connect members to it.
     driven : str
-        The member of the output.
+        Output member.
     elements : sequence of GivenElement
-        Without faults.
+        Clutches and brakes without errors.
     efficiency : float
-        Of every mesh as an ordinary pair.
+        Efficiency of every mesh as an ordinary pair.
     """
     found = list(_iterate_states(train, driving, driven, elements, efficiency))
     # Ties in the ratio are ordered by name, so that the table does not depend on the order of the elements.
@@ -144,21 +148,21 @@ def _iterate_states(
         joined = [
             element.clutch for element in engaged if element.clutch and element.find_driven_member(driving) is None
         ]
-        # Without a driven member nothing turns, and a braked one cannot be driven.
+        # Without a member on the input shaft nothing turns, and a member that is held cannot be driven.
         if not inputs or set(inputs) & set(held):
             continue
         known = {**dict.fromkeys(held, 0), **dict.fromkeys(inputs, 1)}
         solution = solve_speeds(train, known, joined)
         output = solution.values[driven]
-        # The elements may repeat or contradict each other, or leave the output at rest: no state of the train then.
+        # Elements that repeat or contradict one another, or that leave the output at rest, give no state.
         if solution.open or solution.contradiction is not None or not output:
             continue
         rates = {body: rate for body, rate in solution.values.items() if rate is not None}
         flow = None
-        # With a clutch or two driven members the speeds do not tell how torque divides, so efficiency stays unknown.
+        # With clutches or two driven members, the division of the torque is unknown, and so is the efficiency.
         if not joined and len(inputs) == 1:
             loads = [*inputs, driven, *held]
-            # The output may itself be the input or a braked member, and then carries no torque of its own.
+            # If the output is also the input, it has no torque of its own.
             if len(set(loads)) == len(loads):
                 flow = solve_power_flow(train, rates, loads, {inputs[0]: Fraction(1)}, parse_decimal(efficiency))
         yield {

@@ -1,4 +1,4 @@
-"""Analysis of trains in series: each unit by its own family, and the shafts between them."""
+"""Analysis of trains in series: each unit by the analysis of its own family, and the shafts between the units."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class GivenTrainSeries(Statement):
     )
 
     def compute_ratio(self) -> Fraction:
-        """Compute input speed of the first unit over output speed of the last, for valid units."""
+        """Compute the ratio of the input speed of the first unit to the output speed of the last, for valid units."""
         return math.prod((compute_unit_ratio(unit) for unit in self.units), start=Fraction(1))
 
 
 def compute_unit_ratio(unit: GivenGearTrain | GivenPlanetaryTrain) -> Fraction:
-    """Compute input over output speed of a unit that transmits its motion."""
+    """Compute the ratio of input speed to output speed of a unit that transmits motion."""
     ratio = unit.compute_ratio() if isinstance(unit, GivenPlanetaryTrain) else unit.build_train().ratio
     assert ratio is not None
     return ratio
@@ -86,7 +86,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED_DESCRIPTION)
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows; errors of a unit are reported at it."""
+        """Return errors that the validation of single fields cannot find. Errors of a unit have the unit's path."""
         faults = super().find_errors()
         if faults:
             return faults
@@ -113,7 +113,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
 
     @property
     def has_backward_flow(self) -> bool:
-        """Whether power leaves at the input at the first position: the output drives."""
+        """Whether power leaves at the input at the first position, so that the output drives."""
         return self.input_torque * float(self.motion.list_inputs()[1][0]) < 0.0
 
     def build_answer(self) -> JsonObject:
@@ -159,7 +159,7 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> JsonObject:
     for unit in request.mechanism.units:
         unit_answer = _analyze_unit(request, unit, back)
         units.append(unit_answer)
-        # Units report input over output speed, but shafts have their speed over the input's: its inverse.
+        # The ratio of a unit is input speed over output speed; the speed ratio of a shaft is the inverse.
         share /= compute_unit_ratio(unit)
         passed = unit_answer["efficiency"]
         # If the output drives, more power enters there than leaves at the input.
@@ -191,14 +191,14 @@ def _analyze_series(request: TrainSeriesAnalysisRequest) -> JsonObject:
 
 
 def _choose_torque(back: bool) -> float:
-    """Return the torque on the input of a unit that is analyzed alone."""
+    """Return the torque on the input of a unit that is analyzed alone: 1, or −1 if the output drives."""
     return -1.0 if back else 1.0
 
 
 def _analyze_unit(
     request: TrainSeriesAnalysisRequest, unit: GivenGearTrain | GivenPlanetaryTrain, back: bool
 ) -> JsonObject:
-    """Analyze a unit alone, its input at speed 1 and with torque 1, or −1 if the output drives."""
+    """Analyze a unit alone, with its input at speed 1 and torque 1, or −1 if the output drives."""
     torque = _choose_torque(back)
     stated: JsonObject = {
         "mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency,

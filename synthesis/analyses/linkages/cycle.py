@@ -1,4 +1,4 @@
-"""The cycle of a linkage: the range of inputs that shows all of its motion, and the effort of following it."""
+"""Cycle of a linkage, the range of inputs that contains its whole motion, and the effort of computing it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from kinematics.linkage.planar.limits import find_branches, find_reference_branc
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 
 MAX_EFFORT = 200
-"""Maximum effort of an answer that a client waits for: some seconds."""
+"""Maximum effort of an analysis for which a client waits: a few seconds."""
 
 
 def estimate_effort(mechanism: Mechanism) -> int:
     """Estimate the effort of listing the circuits of a mechanism: closures × assemblies × turns of a cycle.
 
-    A dyad closes two links, or one link and a slide, and has two assemblies. The turns are those of the fastest link
-    that gears tie to the input. An eightbar has an effort of 24.
+    A dyad consists of two links, or of a link and a slide, and has two assemblies. The turns are those of the fastest
+    link that is geared to the input. An eightbar has an effort of 24.
     """
     dyads = max(len(mechanism.links) - 2 + len(mechanism.slides) - len(mechanism.gears), 0) // 2
     return dyads * (1 << dyads) * round(count_fastest_turns(mechanism))
@@ -28,7 +28,7 @@ def list_branches(mechanism: Mechanism) -> list[Branch]:
     Raises
     ------
     TopologyError
-        If they cannot be listed, or not while a client waits.
+        If they cannot be listed, or if this takes too long for a waiting client.
     """
     if estimate_effort(mechanism) > MAX_EFFORT:
         raise TopologyError("too many assemblies, or too many turns until the motion repeats, to list all circuits")
@@ -44,17 +44,17 @@ def find_branch(mechanism: Mechanism) -> Branch | None:
 
 
 def find_cycle(mechanism: Mechanism) -> tuple[float, float]:
-    """Find first and last input of the cycle, radians, or lengths along the input slide; see
-    :func:`find_cycle_along`."""
+    """Find the first and the last input of the cycle; see :func:`find_cycle_along`."""
     return find_cycle_along(mechanism, find_branch(mechanism))
 
 
 def find_cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float]:
-    """Find first and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
+    """Find the first and the last input of the cycle on a branch, radians, or lengths along the input slide.
 
-    For a crank from the reference through a full turn (or as many as gears or a triad need), else from toggle to toggle
-    of the reference's branch. If the branch is unknown, also a full turn, or for a driving slider as far as the
-    mechanism is wide; ``valid`` then shows where the mechanism exists.
+    For a crank the cycle is a full turn from the reference, or as many turns as gears or a triad need. For any other
+    input it extends from toggle to toggle of the branch of the reference, ``here``. If the branch is unknown (None), it
+    is a full turn, or for a driving slider a range as wide as the mechanism; ``valid`` in the answer then shows where
+    the mechanism can be assembled.
     """
     at = float(mechanism.reference_input)
     if (here is None or here.full) and mechanism.has_slide_input:
@@ -65,6 +65,6 @@ def find_cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, 
         return at, at + (compute_cycle(mechanism) if here is None else compute_cycle_on_branch(mechanism, here))
     low = here.low
     if not mechanism.has_slide_input:
-        # Branches are known to full turns, and the turn counts: the reference lies on it.
+        # The ends of a branch are known up to whole cycles: shift them so that the reference lies between them.
         low = at - float(np.mod(at - here.low, compute_cycle(mechanism)))
     return low, low + here.high - here.low

@@ -1,4 +1,4 @@
-"""Reported properties of a force over a closed cycle: mean, rms, harmonics, and a flywheel for the drive."""
+"""Properties of forces over a closed cycle: mean, rms, harmonics, and a flywheel for the drive."""
 
 from __future__ import annotations
 
@@ -21,36 +21,36 @@ from synthesis.model.dynamics.request import FlywheelSpec
 from synthesis.model.json_object import JsonObject
 
 CYCLE_TOLERANCE = 1e-9
-"""Tolerance of a closed motion, as a share of a cycle: rounding."""
+"""Tolerance with which a motion counts as closed, as a share of a cycle, for rounding."""
 
 PERIODICITY_TOLERANCE = 1e-6
-"""Permitted difference of the drive at the ends of a cycle, as a share of its peak: rounding, magnified near a
-toggle."""
+"""Permitted difference of the drive at the ends of a cycle, as a share of its peak, for rounding that is magnified near
+a toggle."""
 
 MAX_ORDERS = 24
-"""Maximum number of reported harmonics."""
+"""Maximum order of reported harmonics, in periods per turn of the input."""
 
 
 def is_closed(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:
-    """Return whether the motion is a whole number of cycles of ``turns`` turns with a drive that repeats."""
+    """Return whether the motion is a whole number of cycles of ``turns`` turns, and the drive repeats."""
     if mechanism.has_slide_input or len(at) < 3 or not turns:
         return False
     cycles = abs(float(at[-1] - at[0])) / (FULL_TURN * turns)
     steps = np.diff(at)
     even = float(np.ptp(steps)) <= CYCLE_TOLERANCE * float(np.abs(at[-1] - at[0]))
     whole = round(cycles) >= 1 and abs(cycles - round(cycles)) <= CYCLE_TOLERANCE * cycles
-    # A torsion spring that is wound up turn by turn has no cycle.
+    # The drive does not repeat if, for example, a torsion spring is wound up turn by turn.
     known = np.abs(drive[np.isfinite(drive)])
     return even and whole and len(known) > 0 and bool(abs(drive[-1] - drive[0]) <= PERIODICITY_TOLERANCE * known.max())
 
 
 def compute_mean(values: Real, closed: bool) -> float | None:
-    """Compute the mean over a closed cycle by the trapezoid rule, without counting its end twice."""
+    """Compute the mean over a closed cycle by the trapezoid rule; None if it is not closed or a value is unknown."""
     return float(values[:-1].mean()) if closed and np.isfinite(values).all() else None
 
 
 def compute_rms(values: Real, closed: bool) -> float | None:
-    """Compute the root mean square over a closed cycle."""
+    """Compute the root mean square over a closed cycle; None as for :func:`compute_mean`."""
     squared = compute_mean(values**2, closed)
     return None if squared is None else math.sqrt(squared)
 

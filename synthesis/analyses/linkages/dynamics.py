@@ -33,18 +33,18 @@ HIGH_INDEX = 2.0
 """Joint force index above which the client is warned (Norton, Sec. 11.12)."""
 
 DETERMINED_STATUSES = ("ok", "stick")
-"""States of a position in which forces are known, apart from friction that the motion does not determine."""
+"""Statuses of a position at which the forces are known; with ``stick``, only the friction is undetermined."""
 
 AGREEMENT = 1e-6
-"""Difference of two routes to the same force, as a share of its peak, with which it counts as known. They agree to 1e-9
-and better where no joint is near a dead centre."""
+"""Maximum difference between the two computations of a force, as a share of its peak, with which it counts as known.
+They agree to 1e-9 or better if no joint is near a dead centre."""
 
 MIN_LOAD_SHARE = 1e-6
-"""Share of the largest part of a balance below which its sum is nothing that an error could be compared with."""
+"""Share of the largest term of a balance: a smaller sum is not used as the reference of an error."""
 
 
 class DrivenMachine(NamedTuple):
-    """A machine driven to inputs: reactions, balances, and where it could be assembled."""
+    """Results of a machine driven to inputs: reactions, balances, and a mask of positions that can be assembled."""
 
     valid: NDArray[np.bool_]
     smooth: NDArray[np.bool_]
@@ -58,7 +58,7 @@ class DrivenMachine(NamedTuple):
 def analyze_forces(
     mechanism: Mechanism, block: DynamicsBlock, unit: LengthUnit, at: Real, speed: Real, acceleration: float
 ) -> JsonObject:
-    """Build the answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
+    """Build the answer at inputs ``at`` (degrees, or lengths along the input slide), with speeds and acceleration."""
     machine, warnings = build_machine(block, mechanism, unit)
     indexed = block.is_reported("joint_force_index")
     course = _drive_machine(machine, at, speed, acceleration, indexed, block.minimum_norm)
@@ -101,19 +101,20 @@ def analyze_forces(
 
 
 class UndeterminedForcesError(ValueError):
-    """Forces that are not determined all along a motion; says what stands against them and where."""
+    """Raised if forces are not determined over a whole motion; the message gives the reason and the input."""
 
 
 def find_force_peaks(
     mechanism: Mechanism, block: LoadedLinkage, unit: LengthUnit, at: Real, speed: float
 ) -> tuple[bool, dict[str, Peak]]:
-    """The peaks of all forces at constant speed, by the names of :func:`_list_quantities`; and whether the motion
-    closes.
+    """Find the peaks of all forces at constant speed.
+
+    Return whether the motion is closed, and the peaks by the names of :func:`_list_quantities`.
 
     Raises
     ------
-    Undetermined
-        Where the motion has a position without forces, or both routes to them disagree.
+    UndeterminedForcesError
+        If the forces are undetermined at a position of the motion, or if their two computations disagree.
     """
     machine, _ = build_machine(block, mechanism, unit)
     course = _drive_machine(machine, at, np.full(len(at), speed), 0.0, bool(block.loads))
@@ -132,7 +133,7 @@ def find_force_peaks(
 
 
 def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[str], rubbing: bool) -> JsonObject:
-    """List forces in joints, slides and gears, and friction."""
+    """Return the forces in joints, slides and gears, and the friction if there is any."""
     found, slides = course.reactions, machine.mechanism.slides
     answer: JsonObject = {
         "joints": {
@@ -150,7 +151,7 @@ def _list_joint_forces(machine: Machine, course: DrivenMachine, reported: list[s
 
 
 def _find_largest_index(course: DrivenMachine, extremes: JsonObject) -> tuple[float | None, list[str]]:
-    """Find the largest joint force index, None if a dead centre makes it infinite; also return warnings."""
+    """Find the maximum joint force index, None if a dead centre makes it infinite; also return warnings."""
     dead = course.valid & ~(course.reactions.condition < MAX_CONDITION) & course.reactions.determined
     if dead.any():
         return None, ["joint_force_index: infinite at a dead centre"]
@@ -175,7 +176,7 @@ def _run_course(
 ) -> DrivenMachine:
     now, by_input = Places(machine.mechanism, motion, machine.scale), Places(machine.mechanism, paced, machine.scale)
     if machine.mechanism.has_slide_input:
-        # Work needs the input in the unit of the forces, metres instead of millimetres.
+        # Work needs the input in the length unit of the forces, for example metres instead of millimetres.
         by_input = Places(machine.mechanism, _slow_motion(paced, machine.scale), machine.scale)
     found = compute_reactions(machine, now, minimum_norm=minimum_norm)
     check = compute_balance(machine, now, by_input, found.rubbing)
@@ -218,7 +219,7 @@ def _list_status(course: DrivenMachine) -> list[str]:
 
 
 def _list_slide_frictions(found: Reactions) -> list[Real]:
-    """List the friction of each slide's line on its pin, along the slide's direction."""
+    """Return the friction force of each slide's line on its pin, along the direction of the slide."""
     frictions = [0.0 * normal for normal in found.slides]
     for contact, friction in zip(found.rubbing.contacts, found.rubbing.frictions, strict=True):
         if contact.slide >= 0:
@@ -239,7 +240,7 @@ def _describe_friction(course: DrivenMachine) -> JsonObject:
 
 
 def _list_reported_joints(machine: Machine) -> list[str]:
-    """List the joints that join links, or carry a slide, a mass or a load."""
+    """Return the joints that connect links, or carry a slide, a mass or a load."""
     mechanism = machine.mechanism
     carrying = {slide.joint for slide in mechanism.slides} | set(machine.pin_masses)
     carrying |= {load.joint for load in machine.loads if hasattr(load, "joint")}
@@ -251,7 +252,7 @@ def _list_reported_joints(machine: Machine) -> list[str]:
 
 
 def _list_quantities(machine: Machine, course: DrivenMachine) -> Samples:
-    """List the quantities with peaks, by name."""
+    """Return the quantities whose peaks are found, by name."""
     found = course.reactions
     return {
         "drive": found.drive,
@@ -288,7 +289,7 @@ def _find_extremes(
 
 
 def _compare_routes(found: Reactions, check: Balance) -> dict[str, float | None]:
-    """Compute the largest differences of the two routes, as shares of the peaks."""
+    """Compute the maximum differences between reactions and balances, as shares of the peaks."""
     if not found.solved.any():
         return {"virtual_work": None, "momentum": None}
     known = found.solved

@@ -1,6 +1,6 @@
 """Results available for pin-jointed fourbars only: cognates, centrodes, curvature, and the sextic of the coupler curve.
 
-Only requested results are computed. Cognates are mechanisms that can be used as a request as they are.
+Only requested results are computed. Cognates are given in the form of mechanisms in requests.
 """
 
 from __future__ import annotations
@@ -123,7 +123,10 @@ class AssembledFourbar(NamedTuple):
 
 
 def extract_fourbar(mechanism: Mechanism) -> AssembledFourbar | None:
-    """Extract the pin-jointed fourbar, or None; the coupler's third joint is its coupler point, else A."""
+    """Extract the pin-jointed fourbar; None for another mechanism.
+
+    The coupler point is the third joint of the coupler, or A if it has none.
+    """
     if len(mechanism.links) != 4 or mechanism.slides or mechanism.gears:
         return None
     ground = set(mechanism.links[GROUND])

@@ -18,14 +18,14 @@ from synthesis.model.layout import LayoutSizes
 from synthesis.model.linkage.answer import Layout, LayoutClash
 
 PROBE_COUNT = 181
-"""Number of inputs at which to test whether the mechanism can be driven through the motion."""
+"""Number of inputs at which to test whether the mechanism can be assembled over the motion."""
 
 CYCLE_TOLERANCE = 1e-9
-"""Tolerance of a closed motion, as a share of a cycle: rounding."""
+"""Tolerance with which a motion counts as closed, as a share of a cycle, for rounding."""
 
 
 def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[float, float] | None) -> Layout:
-    """Lay a linkage out in planes.
+    """Arrange a linkage in planes; a range that is too long to be examined gives an empty layout with a remark.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[floa
         Sizes of links and pins.
     used : pair of float or None
         First and last input of the used range, radians or positions along the input slide; None if no motion passes
-        through it.
+        through the targets.
     """
     try:
         return lay_out_range(mechanism, sizes, used)
@@ -44,7 +44,7 @@ def lay_out_mechanism(mechanism: Mechanism, sizes: LayoutSizes, used: tuple[floa
 
 
 def lay_out_range(mechanism: Mechanism, requested: LayoutSizes, used: tuple[float, float] | None) -> Layout:
-    """Lay a linkage out for a range of its input; a range of more than a cycle is reduced to one cycle.
+    """Arrange a linkage in planes for a range of its input; a range longer than a cycle is reduced to one cycle.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""The analysis of a planar linkage: request and answer, in degrees.
+"""Analysis of a planar linkage: request and answer, in degrees.
 
-The answer consists of plain lists, for speed; :class:`LinkageAnalysis` documents it. If the mechanism cannot be
-assembled, ``valid`` is False and the numbers are NaN, which become null in JSON.
+For speed, the answer consists of plain lists; :class:`LinkageAnalysis` documents them. At positions at which the
+mechanism cannot be assembled, ``valid`` is False and the numbers are NaN, which becomes null in JSON.
 """
 
 from __future__ import annotations
@@ -108,13 +108,13 @@ class LinkageAnalysisRequest(AnalysisRequest):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows: (path, detail)."""
+        """Return errors that the validation of single fields cannot find, as pairs (path, detail)."""
         faults = [*self.motion.find_errors(), *find_target_errors(self.mechanism, self.targets, self.manufacture)]
         if not self.points and self.dynamics is None:
             return faults
         try:
             mechanism = self.mechanism.build_mechanism()
-        except (MechanismError, KinematicsError):  # the answer says so, in its own words
+        except (MechanismError, KinematicsError):  # building the answer reports this error
             return faults
         moving = [link for link in mechanism.links if link != GROUND]
         for name, point in self.points.items():
@@ -188,7 +188,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     @classmethod
     def analyze_cycle(cls, mechanism: JsonObject, steps: int) -> JsonObject:
-        """Build the answer from the first target on, through a full turn or from toggle to toggle."""
+        """Build the answer over a cycle: a full turn from the first target on, or from toggle to toggle."""
         given = _GIVEN_ADAPTER.validate_python(mechanism).build_mechanism()
         low, high = find_cycle(given)
         at = np.linspace(low, high, steps + 1)

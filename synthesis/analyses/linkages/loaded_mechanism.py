@@ -1,6 +1,6 @@
-"""A mechanism with masses and loads in a problem: its analysis request, and its errors.
+"""Analysis request and errors of a given mechanism with masses and loads, for problems that contain one.
 
-The mechanism is parsed here and not in the models of the problem, because it needs the analysis core.
+The mechanism is parsed here and not in the models of the problem, because parsing needs the analysis core.
 """
 
 from __future__ import annotations
@@ -35,7 +35,10 @@ def build_loaded_request(mechanism: JsonObject, dynamics: LoadedLinkage, unit: L
 def find_loaded_errors(
     mechanism: JsonObject, dynamics: LoadedLinkage, unit: LengthUnit, *, shaft: bool = False
 ) -> list[tuple[str, str]]:
-    """List errors as (JSON pointer, detail) below /mechanism or /dynamics; with ``shaft`` a crank must drive."""
+    """Return errors as pairs (JSON pointer, detail) below /mechanism or /dynamics.
+
+    With ``shaft``, a mechanism that a slider drives is an error.
+    """
     try:
         request = build_loaded_request(mechanism, dynamics, unit)
     except ValidationError as error:
@@ -62,7 +65,7 @@ def find_loaded_errors(
 def find_driven_errors(
     mechanism: JsonObject, dynamics: LoadedLinkage, unit: LengthUnit, motion: Sweep
 ) -> tuple[Mechanism | None, list[tuple[str, str]]]:
-    """Return the mechanism to be driven over a motion, None if it is invalid, and the errors."""
+    """Return the mechanism to be driven over a motion, or None if it is invalid, and the errors."""
     faults = find_loaded_errors(mechanism, dynamics, unit)
     if faults:
         return None, faults

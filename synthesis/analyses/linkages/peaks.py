@@ -1,8 +1,8 @@
 """Extremes of quantities along a motion, refined between its positions.
 
-Near a toggle a force can rise and fall between two positions. Wherever the bend of a quantity permits a value above the
-highest known one, the motion is sampled more closely, in a few rounds; with many such places, those with the highest
-possible values come first.
+Near a toggle, a force can rise and fall between two positions. Wherever the bend (second derivative) of a quantity
+permits a value above the highest known one, the motion is sampled more closely, in a few rounds. If there are many such
+intervals, those with the highest possible values are refined first.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from kinematics.arrays import Real
 Samples = dict[str, Real]
 
 INTERVAL_PARTS, MAX_ROUNDS = 8, 5
-"""Number of parts into which a doubtful interval is divided, and maximum number of rounds."""
+"""Number of parts into which an interval is divided that may contain a higher value, and maximum number of rounds."""
 
 MAX_BEND_FACTOR = 4.0
-"""Assumed maximum bend between two positions, as a multiple of the neighbouring second differences."""
+"""Assumed maximum bend between two positions, as a multiple of the larger of the neighbouring second differences."""
 
 PEAK_TOLERANCE = 1e-5
-"""Share of the highest value by which a value between positions may exceed it before a parabola is used."""
+"""Possible excess over the highest known value, as a share of it, up to which an interval is not refined further."""
 
 MAX_ADDED_POSITIONS = 4096
 """Maximum number of positions added in a round."""
@@ -47,11 +47,11 @@ def find_peaks(
         Inputs of the motion; between neighbours they follow the parabola through three of them, which is exact for
         equal steps of the input and for a run of constant acceleration.
     samples : dict of str to float, shape (N,)
-        Quantities there; NaN where there are none.
+        Quantities at these inputs; NaN where they are unknown.
     measure : callable
         Computes the quantities at other inputs and speeds.
     closed : bool
-        Whether the motion closes, so that a peak may lie beyond its end.
+        Whether the motion is closed, so that a peak may lie beyond its end.
     """
     known = {name: values for name, values in samples.items() if np.isfinite(values).any()}
     found = {name: Peak(np.nan, np.nan) for name in samples}
@@ -71,13 +71,17 @@ def find_peaks(
 
 
 def _find_doubtful_places(places: Real, known: Samples) -> Real:
-    """Find places between those of ``places`` where some quantity may exceed its highest value."""
+    """Find places between those of ``places`` at which some quantity may exceed its highest value.
+
+    Places are indices of the original positions, with fractions between them.
+    """
     steps = np.diff(places)
     above = np.zeros(len(steps))
     for values in known.values():
         slopes = np.diff(values) / steps
         bends = np.abs(np.nan_to_num(2.0 * np.diff(slopes) / (steps[1:] + steps[:-1])))
         bend = np.maximum(np.concatenate([bends[:1], bends]), np.concatenate([bends, bends[-1:]]))
+        # A parabola of this bend rises above the higher end of an interval h by at most bend · h² / 8.
         highest = np.nanmax(values)
         reached = np.maximum(values[:-1], values[1:]) + MAX_BEND_FACTOR * bend * steps**2 / 8.0
         excess = np.nan_to_num(reached - highest) / (np.nanmax(np.abs(values)) or 1.0)
@@ -91,7 +95,7 @@ def _find_doubtful_places(places: Real, known: Samples) -> Real:
 
 
 def _interpolate(values: Real, places: Real) -> Real:
-    """Interpolate values given at whole numbers, by the parabola through the nearest three."""
+    """Interpolate values, given at integer places, by the parabola through the nearest three."""
     middle = np.clip(np.rint(places).astype(int), 1, len(values) - 2)
     share = places - middle
     before, at, after = values[middle - 1], values[middle], values[middle + 1]
@@ -112,7 +116,7 @@ def _find_vertex(positions: Real, places: Real, values: Real, closed: bool) -> P
     else:
         return stands
     left, right = ((top - float(values[side])) / far for side, far in zip(sides, reach, strict=True))
-    # At a corner, or next to a position without a value, the parabola is meaningless: keep the highest value.
+    # At a corner, or next to a position without a value, the parabola is meaningless, so keep the highest value.
     bend = (left + right) / (reach[0] + reach[1])
     slope = (left * reach[1] - right * reach[0]) / (reach[0] + reach[1])
     if not bend > 0.0:

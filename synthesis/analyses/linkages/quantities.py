@@ -1,4 +1,4 @@
-"""Motion of a linkage over given inputs and all derived quantities, as plain lists in degrees."""
+"""Motion of a linkage over given inputs, and all quantities derived from it, as plain lists in degrees."""
 
 from __future__ import annotations
 
@@ -37,14 +37,25 @@ def analyze_motion(
     tracked: bool = False,
     points: Mapping[str, tuple[str, complex]] = MappingProxyType({}),
 ) -> JsonObject:
-    """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it.
+    """Drive a mechanism to inputs and list its motion and all derived quantities.
 
-    ``tracked`` adds to each branch where the joints are along it; ``points`` are further points by link and place.
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism in its reference configuration.
+    at, speed : float, shape (n,)
+        Inputs (degrees, or lengths along the input slide) and their speeds (radians or lengths per second).
+    acceleration : float
+        Constant acceleration of the input.
+    tracked : bool
+        Whether to add the positions of the joints along each branch.
+    points : mapping of str to (str, complex)
+        Further points by name: the link, and the position on it.
     """
     slide = mechanism.has_slide_input
     inputs = at if slide else np.radians(at)
     motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration)
-    # Ratios and instant centres are of the position alone, and known also where the input just stands still.
+    # Ratios and instant centres depend on the position alone, so they are also known at inputs with speed 0.
     paced = motion if np.all(speed) else drive(mechanism, inputs, order=1)
     sines = {link: np.abs(sine) for link, sine in motion.sines.items()}
     transmission = {link: _list_values(np.degrees(np.arcsin(np.minimum(sine, 1.0)))) for link, sine in sines.items()}
@@ -82,7 +93,7 @@ def _list_series(jet: Real) -> dict[str, list[float]]:
 
 
 def _unwrap_angle(angle: Real) -> Real:
-    """Unwrap angles, the first in (−π, π]; gaps are skipped."""
+    """Unwrap angles so that they are continuous, with the first in (−π, π]; positions without a value are skipped."""
     known = np.isfinite(angle)
     out = angle.copy()
     if known.any():
@@ -105,7 +116,10 @@ def _describe_travel(jet: Real) -> dict[str, list[float]]:
 
 
 def _compute_ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
-    """Compute input speed over that of links or slides, by virtual work the ratio of the output's torque or force."""
+    """Compute the speed of the input over that of each output.
+
+    By virtual work this is the ratio of the torque or force on the output to that of the input.
+    """
     ratios = {}
     for name in outputs:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -122,13 +136,13 @@ def _list_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict
 
 
 def _list_grounded_links(mechanism: Mechanism) -> list[str]:
-    """List the links pinned to the ground, except the input."""
+    """Return the links pinned to the ground, except the input."""
     ground = set(mechanism.links[GROUND])
     return [n for n, listed in mechanism.links.items() if n not in (GROUND, mechanism.input) and ground & set(listed)]
 
 
 def _list_output_slides(mechanism: Mechanism) -> list[str]:
-    """List the names of the slides on the ground, except the input."""
+    """Return the names of the slides on the ground, except the input."""
     named = zip(mechanism.slide_names, mechanism.slides, strict=True)
     return [name for name, slide in named if slide.link == GROUND and slide.joint != mechanism.input]
 
@@ -156,7 +170,7 @@ def _sample_branch(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, 
     signs = tuple(np.array(next(chosen) if step.has_two_solutions else 1) for step in steps)
     share = np.linspace(0.0, 1.0, BRANCH_SAMPLE_COUNT)
     if not branch.full:
-        # Joints go with the root of the distance from a toggle.
+        # Near a toggle, the joints move with the square root of the input's distance from it; equalize their steps.
         share = 0.5 - 0.5 * np.cos(np.pi * share)
     motion = drive(mechanism, branch.low + share * (branch.high - branch.low), signs=signs, order=0)
     return {

@@ -1,4 +1,4 @@
-"""A machine over the motion of a problem: its positions, and the machine driven along them."""
+"""A machine and the motion that a problem requests: positions of the input, and the machine driven to them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.input_motion import FULL_TURN, Sweep
 
 CYCLE_TOLERANCE = 1e-9
-"""Tolerance of a range of whole turns, as a share of a turn: rounding."""
+"""Tolerance with which a range counts as whole turns, as a share of the range, for rounding."""
 
 
 class Task(NamedTuple):
@@ -41,12 +41,12 @@ class Task(NamedTuple):
         )
 
     def list_positions(self, count: int) -> Real:
-        """Return ``count`` positions of the input at equal distances."""
+        """Return ``count`` equally spaced positions of the input; a closed range is listed without its end."""
         return np.asarray(np.linspace(self.start, self.end, count, endpoint=not self.is_closed))
 
 
 def build_task(statement: JsonObject, dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep) -> Task:
-    """Build the machine of a consistent problem, and its motion."""
+    """Build the machine and the motion of a consistent problem."""
     request = build_loaded_request(statement, dynamics, unit)
     mechanism = request.mechanism.build_mechanism()
     machine, _ = build_machine(dynamics, mechanism, unit)
@@ -60,12 +60,12 @@ def build_task(statement: JsonObject, dynamics: DynamicsBlock, unit: LengthUnit,
 
 
 def place_machine(machine: Machine, at: Real, speed: float = 1.0, acceleration: float = 0.0) -> Places:
-    """Drive a machine to inputs with a speed and an acceleration."""
+    """Drive a machine to inputs (radians or lengths) with a constant speed and acceleration."""
     mechanism = machine.mechanism
     motion = drive(mechanism, at, speed=np.full(len(at), speed), acceleration=acceleration, order=2)
     return Places(mechanism, motion, machine.scale)
 
 
 def pace_machine(machine: Machine, at: Real) -> Places:
-    """Drive a machine to inputs with speed 1 in the unit of its forces, in which work is computed."""
+    """Drive a machine to inputs with speed 1 in the length unit of its forces, in which work is computed."""
     return place_machine(machine, at, 1.0 / machine.scale if machine.mechanism.has_slide_input else 1.0)

@@ -1,4 +1,4 @@
-"""A given fourbar or slider-crank at targets, and as manufactured: the same results as for designs."""
+"""Errors of a given fourbar or slider-crank at targets, and its manufacturing results, as for designs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ UNSUPPORTED_MESSAGE = "only fourbars and slider-cranks given by their dimensions
 def find_target_errors(
     mechanism: GivenMechanism, targets: Sequence[TargetSpec], block: Exactness | None
 ) -> list[tuple[str, str]]:
-    """List errors that no single field shows: (path, detail)."""
+    """Return errors that the validation of single fields cannot find, as pairs (path, detail)."""
     if not targets:
         return [("/targets", "missing: the analysis of manufacture needs targets")] if block is not None else []
     linkage = extract_linkage(mechanism)
@@ -54,14 +54,14 @@ def find_target_errors(
 
 
 def analyze_targets(mechanism: GivenMechanism, targets: Sequence[TargetSpec], block: Exactness | None) -> JsonObject:
-    """Measure a linkage's errors at its targets and its manufacturing results: fields of the answer.
+    """Compute a linkage's errors at its targets and its manufacturing results, as fields of the answer.
 
     Parameters
     ----------
     mechanism : a given mechanism
-        Without errors by :func:`find_target_errors`, like the targets.
+        The linkage, for which :func:`find_target_errors` finds no errors.
     targets : sequence of TargetSpec
-        All of one sort.
+        Targets, all of one sort.
     block : Exactness or None
         Manufacturing accuracy.
     """
@@ -112,7 +112,10 @@ def _build_requirements(mechanism: GivenMechanism, linkage: Linkage, targets: Se
 
 
 def _find_nearest_inputs(linkage: Linkage, held: RequiredTargets) -> RequiredTargets:
-    """Fill in omitted inputs at which the linkage comes nearest, all in one run."""
+    """Fill in omitted inputs by those at which the linkage comes nearest to the targets.
+
+    Each input is first found on a grid; then all of them are refined at once.
+    """
     known = np.isfinite(held.inputs)
     turn = np.linspace(0.0, math.tau, SAMPLE_COUNT, endpoint=False)
     inputs = np.where(known, held.inputs, 0.0)
@@ -135,7 +138,7 @@ def _find_nearest_inputs(linkage: Linkage, held: RequiredTargets) -> RequiredTar
     task = dataclasses.replace(task, adjusted=True, greatest=False)
     refined = measure_deviations(task, linkage.row[None, : task.dimensions]).inputs[0]
     inputs = np.where(known | ~np.isfinite(refined), inputs, refined)
-    # A given input determines its turn; the others follow the previous one by the shorter way.
+    # A given input determines its turn. Each other input is in the turn nearest to the previous input.
     for k in range(1, len(inputs)):
         if not known[k]:
             inputs[k] -= math.tau * round((inputs[k] - inputs[k - 1]) / math.tau)

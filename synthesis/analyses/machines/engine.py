@@ -1,4 +1,4 @@
-"""The analysis of a piston engine: where its pistons are, and how they move."""
+"""Analysis of a piston engine: positions, velocities and accelerations of its pistons."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class EngineAnalysisRequest(DrivenRequest[GivenEngine]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.mechanism.rod <= self.mechanism.crank:
             faults.append(("/mechanism/rod", "the rod must be longer than the crank's radius"))

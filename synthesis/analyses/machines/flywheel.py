@@ -1,4 +1,4 @@
-"""The analysis of a flywheel: its mass and inertia, and how it turns."""
+"""Analysis of a flywheel: its mass, moment of inertia, rotation and kinetic energy."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.mechanism.inner_radius >= self.mechanism.radius:
             faults.append(("/mechanism/inner_radius", "must be below the outer radius"))

@@ -1,4 +1,4 @@
-"""The analysis of a Geneva drive: where its wheel stands while the crank turns, and how it moves."""
+"""Analysis of a Geneva drive: position and motion of its wheel while the crank turns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Count, Degrees, PositiveLength, Statement
 
 ENTRY_TOLERANCE = 1e-9
-"""Share by which a crank may be shorter than the radius at which its roller reaches a slot: rounding."""
+"""Share by which a crank may be shorter than the radius at which its roller reaches a slot, for rounding."""
 
 
 class GivenDragLink(Statement):
@@ -89,7 +89,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults, given = super().find_errors(), self.mechanism
         step = math.pi / given.stations
         if given.type == "geneva_spherical":

@@ -1,4 +1,4 @@
-"""The analysis of a ratchet: how far its pawls are lifted while the wheel turns on."""
+"""Analysis of a ratchet: lift of its pawls while the wheel turns."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults, given = super().find_errors(), self.mechanism
         if given.tooth_height >= 0.9 * given.wheel_radius:
             faults.append(("/mechanism/tooth_height", "must be below nine tenths of the wheel's radius"))

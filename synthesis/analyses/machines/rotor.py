@@ -1,4 +1,4 @@
-"""The analysis of a rotor: what its unbalances exert on the frame and on its bearings as it turns."""
+"""Analysis of a rotor: forces of its unbalances on the frame and on the bearings as it turns."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         bearings = self.mechanism.bearings
         alike = bearings is not None and bearings[0] == bearings[1]
         same = [("/mechanism/bearings", "two bearings at the same position cannot carry a couple")] if alike else []
@@ -99,7 +99,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         )
         z = np.array([entry.z for _, entry in signed], np.float64)
         about = 0.0 if given.bearings is None else given.bearings[0]
-        # Force of the rotor on the frame: − m a of a point on a circle.
+        # The force of the rotor on the frame is −m a, with the acceleration a of a point that moves on a circle.
         turning = np.exp(1j * np.radians(at)) * (speed**2 - 1j * self.motion.acceleration)
         carried = (
             [] if given.bearings is None else compute_bearing_moments(moments, z, np.array(given.bearings)).tolist()

@@ -1,4 +1,4 @@
-"""The analysis of universal joints: one, or several in a row of shafts."""
+"""Analysis of universal joints: a single joint, or several joints in series."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import MAX_MAGNITUDE, NonNegative, Number, Statement
 
 SPEED_TOLERANCE = 1e-12
-"""Fluctuation of the speed that counts as rounding."""
+"""Coefficient of fluctuation up to which the output speed counts as constant, for rounding."""
 
 
 class JointSpec(Statement):
@@ -88,7 +88,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """List errors that no single field shows."""
+        """Return errors that the validation of single fields cannot find."""
         faults, limits = super().find_errors(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
             faults.append(("/limits", "give the fluctuation, or a minimum or maximum ratio"))
@@ -139,7 +139,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         }
 
     def _find_largest_angle(self) -> float | None:
-        """Find the largest joint angle (degrees) within the given limits; None without limits."""
+        """Find the maximum joint angle, degrees, within the given limits; None if no limits are given."""
         limits = self.limits
         if limits is None:
             return None

@@ -17,7 +17,7 @@ def _solve(problem: BalancingProblem, progress: Progress) -> BalancingResult:
 
 
 def _is_brief(problem: BalancingProblem) -> bool:
-    """Return whether the answer is instant: only holes and weights in stock need a search."""
+    """Return whether the answer is instant: only a choice among holes or stock weights needs a search."""
     correction = problem.correction
     return correction is None or (correction.holes is None and correction.stock is None)
 

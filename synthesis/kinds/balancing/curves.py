@@ -22,7 +22,7 @@ ROUNDING_TOLERANCE = 1e-9
 
 
 class ShakingCurves(NamedTuple):
-    """Magnitude of the force, and the moment, over inputs in degrees (or lengths); NaN where they are unknown."""
+    """Magnitude of the force, and the moment, over inputs in degrees or lengths; NaN where the forces are unknown."""
 
     at: Real
     force_before: Real
@@ -32,7 +32,7 @@ class ShakingCurves(NamedTuple):
 
 
 def compute_shaking_curves(problem: BalancingProblem, design: BalancedDesign) -> ShakingCurves:
-    """Compute the curves of a linkage and of its design, from the inertia of the links alone."""
+    """Compute the curves before and after balancing, from the inertia of the links alone."""
     task = build_balancing_task(problem)
     at = np.linspace(task.start, task.end, POSITION_COUNT)
     curves = []
@@ -42,7 +42,7 @@ def compute_shaking_curves(problem: BalancingProblem, design: BalancedDesign) ->
         )
         curves += [np.abs(found.shaking_force), found.shaking_moment]
     for before, after in ((0, 2), (1, 3)):
-        # Rounding would otherwise be drawn as a noisy curve.
+        # Set rounding errors to zero, which would otherwise be drawn as a noisy curve.
         curves[after] = np.where(
             np.abs(curves[after]) > ROUNDING_TOLERANCE * np.nanmax(np.abs(curves[before])), curves[after], 0.0
         )

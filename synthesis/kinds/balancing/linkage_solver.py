@@ -1,4 +1,4 @@
-"""Linkages: exact or optimal counterweights, each verified by driving the answered linkage."""
+"""Balancing of linkages: exact or optimal counterweights, each verified by driving the linkage of the answer."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def solve_linkage(problem: BalancingProblem, progress: Progress) -> BalancingRes
 
     sifting.verify_candidates(sets, verify_weights)
     progress(1.0, "verified")
-    # The rank of a linear system proves that no weights balance the force; listed sets are limited in number.
+    # The rank of the linear system proves that no weights balance the force.
     complete = not sifting.rejected
     return _build_result(problem, sifting, _write_summary(problem, task, sifting), complete=complete)
 

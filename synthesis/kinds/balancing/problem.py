@@ -156,7 +156,7 @@ class BalancingProblem(RotorBase):
         return self.units if self.dynamics is None else self.dynamics.units
 
     def find_contradictions(self) -> list[Contradiction]:
-        """Return fields of the other object, and errors in those of this one."""
+        """Return fields that belong to the other object (rotor or linkage), and errors in the fields of this one."""
         strange = LINKAGE_FIELDS if self.object == "rotor" else ROTOR_FIELDS
         found = [
             Contradiction(f"/{name}", f"not applicable to a {self.object}; omit it")
@@ -189,7 +189,7 @@ class BalancingProblem(RotorBase):
         return found or self._find_goal_errors()
 
     def _find_goal_errors(self) -> list[Contradiction]:
-        """Return fields of another goal, and missing requirements of a minimum."""
+        """Return fields that belong to another goal, and missing requirements of a minimum."""
         minimized, weights = self.goal == "minimize", self.counterweights
         found = [
             Contradiction(f"/counterweights/{name}", f"not applicable to the goal {self.goal}; omit it")

@@ -1,4 +1,4 @@
-"""Balancing: corrections, each verified by the forces of the corrected rotor."""
+"""Entry point of balancing: corrections of rotors, each verified by the forces of the corrected rotor, and linkages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingR
     sifting = CandidateLog[RotorDesign](problem)
     sifting.verify_candidates(ways, partial(verify_rotor, problem, rotor))
     progress(1.0, "verified")
-    # The smallest residual in the planes also has the smallest grade if the grade refers to these planes.
+    # The correction with the smallest residual also has the smallest grade if the grade refers to the same planes.
     proving = {"grade"} if _is_graded_in_planes(problem) else set()
     complete = all(way.proved for way in ways) and not sifting.rejected.keys() - proving
     return BalancingResult(
@@ -37,7 +37,7 @@ def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingR
 
 
 def _is_graded_in_planes(problem: BalancingProblem) -> bool:
-    """Return whether the bearings are in the planes, or no bearings count."""
+    """Return whether the bearings lie in the planes of correction, or no bearings are given."""
     return problem.supports is None or sorted(problem.supports) == sorted(problem.used_planes)
 
 

@@ -1,4 +1,4 @@
-"""Parts that every answer about a cam shares: segments, joints, optimality, forces, and the result."""
+"""Parts that the answers for all types of cam share: segments, joints, optimality, forces, and the result."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ from synthesis.results.candidate_log import CandidateLog
 from synthesis.verification.checks import check_minimum
 
 FORCE_SLACK = 1e-9
-"""Relative slack of the minimum contact force: the smallest sufficient preload gives exactly that, to rounding."""
+"""Relative slack of the minimum contact force, which the smallest sufficient preload attains to rounding."""
 
 SAMPLE_COUNT = 181
-"""Cam angles sampled between two wall changes to decide which cam pushes; it is the same cam throughout."""
+"""Number of cam angles sampled between two wall changes to decide which cam pushes there."""
 
 ACTIVE_TOLERANCE = 1e-6
 """Relative distance to a constraint within which the constraint counts as active."""
@@ -99,7 +99,7 @@ def describe_joints(problem: CamProblem, program: Program) -> list[CamJoint]:
 
 
 def evaluate_optimality(problem: CamProblem, composed: Composition, size: float) -> Optimality:
-    """Return the criterion's value and lower bound; ``size`` is the cam's, used if that is the criterion."""
+    """Return the criterion's value and lower bound; ``size`` is the cam's size, the value if it is the criterion."""
     value, scope = composed.value, composed.scope
     if problem.minimize == "size":
         value = size
@@ -135,7 +135,7 @@ def compute_forces(problem: CamProblem, program: Program) -> CamForces | None:
     groove = problem.is_form_closed
     force, torque = running.force_extremes, running.torque_extremes
     over_speeds = None if top_rpm is None else _find_contact_over_speeds(running, top_rpm, arm)
-    # A groove has no preferred wall: the angles at which the force changes sign are the wall changes.
+    # The roller changes walls of a groove at the angles at which the force changes sign.
     changes = np.unique(np.degrees(running.find_reversals()).round(9)).tolist() if groove else None
     damping = dynamics.damping_ratio
     train, warning = compute_train_vibration(problem, running)
@@ -168,14 +168,14 @@ def compute_forces(problem: CamProblem, program: Program) -> CamForces | None:
 
 def _find_pushing_cams(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
     """Find which conjugate cam pushes between wall changes: the first if the force acts along the displacement."""
-    # Without any change one cam pushes over the whole turn.
+    # Without wall changes, one cam pushes over the whole turn.
     starts = list(changes) or [0.0]
     ends = [*starts[1:], starts[0] if changes else 360.0]
     found = []
     for start, end in zip(starts, ends, strict=True):
         last = end if end > start else end + 360.0
-        # The sign is read where the force is greatest: near the changes it is only rounding. Both ends are
-        # left out.
+        # Read the sign at the sample with the largest force, because near the changes it is only rounding. Both ends
+        # are left out.
         force = running.force(np.radians(np.linspace(start, last, SAMPLE_COUNT)[1:-1]))
         strongest = force[np.abs(force).argmax()]
         found.append(PushingCam(start=start, end=end, cam=1 if strongest >= 0.0 else 2))
@@ -183,13 +183,16 @@ def _find_pushing_cams(running: RunningCam, changes: Sequence[float]) -> list[Pu
 
 
 def _compute_jump_rpm(running: RunningCam) -> float | None:
-    """Return the speed at which the follower first leaves the cam, rev/min; resting without force is not leaving it."""
+    """Return the lowest speed at which the follower leaves the cam, rev/min.
+
+    A follower that rests on the cam without force has not left it.
+    """
     speed = running.find_jump_speed(-FORCE_SLACK * running.force_extremes.largest)
     return None if math.isinf(speed) else speed * 30.0 / math.pi
 
 
 def _find_contact_over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOverSpeeds:
-    """Find the minimum contact force over the turn, at any speed up to the greatest."""
+    """Find the minimum contact force over the turn and over all speeds up to the maximum."""
     weakest = find_weakest_contact(running.program, running.load, top_rpm)
     return ContactOverSpeeds(
         max_rpm=top_rpm,
@@ -210,14 +213,14 @@ def _describe_spring_choice(
     binding: list[Binding] = []
     if over_speeds.min_contact_force <= dynamics.least_force + ACTIVE_TOLERANCE * abs(force):
         binding.append("least_force")
-    # A free rate has no range of its own.
+    # A free rate has no given range.
     low, high = (stated.min, stated.max) if isinstance(stated, RateRange) else (0.0, math.inf)
     if dynamics.min_frequency_ratio is not None:
         speed = convert_rpm(problem.speed_rpm)
         needed = compute_min_rate(dynamics, problem.length_unit, speed)
         if low < needed and rate <= needed * (1.0 + ACTIVE_TOLERANCE):
             binding.append("min_frequency_ratio")
-            # The frequency ratio, not the lower end of the range, fixes the rate: do not report both.
+            # The frequency ratio, not the lower end of the range, determines the rate: do not report both.
             low = -1.0
     if rate <= low * (1.0 + ACTIVE_TOLERANCE):
         binding.append("spring_rate/min")
@@ -274,7 +277,7 @@ def build_result(
     size: Size,
     radius: tuple[str, float],
 ) -> CamResult:
-    """Build the result with its only candidate; ``radius`` is its name and value, for the summary."""
+    """Build the result for its only candidate; ``radius`` is the name and value of the cam's radius in the summary."""
     passed = design.verification.passed
     failed = [check.name for check in design.verification.checks if not check.passed]
     sifting = CandidateLog[CamDesign | BarrelCamDesign](problem)
@@ -299,7 +302,7 @@ def build_result(
     # A given radius is not the result of an optimization.
     stated = any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
     given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
-    # With the laws given and the smallest cam proven, a limit on size is broken by every cam.
+    # If the laws are given and the cam is proven to be the smallest, every cam breaks a failed limit on size.
     proof = given and size.proven and failed == ["size"]
     return CamResult(
         designs=sifting.select_designs(list),

@@ -1,7 +1,8 @@
 """Barrel cams: the smallest cylinder for a motion program, its groove, and their verification.
 
-tan φ = v/R, so that the greatest velocities of rise and fall require R ≥ |v|/tan φ. The unrolled pitch curve has the
-curvature a R/(R² + v²)^{3/2}; its radius must exceed the roller's by the required ratio at every angle.
+The pressure angle φ follows from tan φ = v/R, so that the peak velocities of rise and fall require R ≥ |v|/tan φ. The
+unrolled pitch curve has the curvature a R/(R² + v²)^{3/2}. At every angle, its radius of curvature over the roller's
+radius must be at least the required ratio.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from synthesis.model.kind import Progress
 
 
 def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composition, progress: Progress) -> CamResult:
-    """Size, make and verify the barrel cam of a composed program."""
+    """Size, build and verify the barrel cam of a composed program."""
     program, roller = composed.program, follower.roller_radius
     size = size_barrel(problem, follower, program)
     if size is None:
@@ -48,7 +49,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     barrel = BarrelCam(program, size.radius, roller)
     progress(0.7, "verifying")
 
-    # Both walls get points at the same angles: those of the wall that needs more of them.
+    # Both walls get points at the same angles, those of the wall that needs more points.
     walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
     angle = max((choose_profile_angles(program, wall, roller, problem.profile_points) for wall in walls), key=len)
     mechanism, verification, measured = resolve_profile(
@@ -77,13 +78,13 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
 
 
 def _refine_angles(angle: Real, measured: MeasuredBarrel, failed: set[str]) -> Real | None:
-    """Return a finer set of angles if the walls have too few points; None if more points do not help."""
+    """Return a refined set of angles if the walls have too few points; None if more points do not help."""
     # A cusp is a property of the groove, not of its resolution.
     if "no_cusp" in failed:
         return None
     if any("reproduces" in name for name in failed):
         return refine_angles(angle, measured.off, DISPLACEMENT_TOLERANCE)
-    # Refine where the curvature is unsettled; refine for the pressure angle only once no curvature is.
+    # Refine stretches with unsettled curvature first. Refine for the pressure angle only if the curvature has settled.
     doubtful = measured.unsettled if measured.unsettled.any() else measured.unsteady
     return refine_angles(angle, doubtful, 1.0) if doubtful.any() else None
 
@@ -95,14 +96,14 @@ def size_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -
     limits, v, roller = problem.limits, program.peaks[1], follower.roller_radius
     rise = math.tan(math.radians(limits.pressure_angle))
     fall = math.tan(math.radians(limits.falling_pressure_angle))
-    # Pressure angle, hub and roller bound R directly; curvature needs the search over all cam angles below.
+    # Pressure angle, hub and roller bound R directly. Curvature needs the search over all cam angles below.
     # R ≥ |v|/tan φ for rise and fall separately, and at least hub and roller.
     least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
     rho = compute_min_pitch_radius(limits, roller)
-    # Beyond this radius the unrolled curve is almost straight, so that curvature no longer decides.
+    # Beyond this radius the unrolled curve is almost straight, so that curvature is not the limit.
     stop = MAX_RADIUS * (least + program.peaks[2].largest + rho)
     radius = find_smallest_allowed(program, _make_curvature(rho), least, stop)
-    # The margin keeps rounding in the finished groove from breaking the limit.
+    # With the margin, rounding in the finished groove cannot break the limit.
     return None if radius is None else Size(radius * (1.0 + RADIUS_MARGIN), proven=True)
 
 

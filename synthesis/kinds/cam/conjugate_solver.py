@@ -1,4 +1,4 @@
-"""Conjugate cams: the second cam of a pair, sized like the first, and the verification that both rollers always fit."""
+"""Conjugate cams: the second cam of a pair, and the verification that a rigid follower fits both at every angle."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ from synthesis.verification.checks import check_error
 Sized = Callable[[CamProblem, Program], Cam | None]
 
 DISTANCE_TOLERANCE = 1e-12
-"""Relative change of the rollers' distance over a turn that is attributed to rounding."""
+"""Relative variation of the rollers' distance over a turn that is attributed to rounding."""
 
 
 def size_second_cam(problem: CamProblem, first: Cam, sized: Sized) -> Cam | None:
     """Size the smallest second cam within the limits, for the first cam's offset or pivot; None if there is none."""
     stated, follower = problem.follower, first.follower
     if isinstance(stated, TranslatingRoller):
-        # Seen from the opposite side the same slide has the opposite offset, and the same arm the opposite
+        # Seen from the opposite side, the same slide has the opposite offset, and the same arm has the opposite
         # sense.
         assert isinstance(follower, core.TranslatingRoller)
         changed = {"offset": -follower.offset, "prime_radius": None}
@@ -57,7 +57,7 @@ def size_second_cam(problem: CamProblem, first: Cam, sized: Sized) -> Cam | None
 
 
 def with_equal_rollers(first: Cam, second: Cam) -> tuple[Cam, Cam]:
-    """Give both cams the smaller of their rollers' radii: the largest that one curve allows may not fit the other."""
+    """Give both cams the smaller roller radius, because the largest roller for one curve may not fit the other."""
     # Equal rollers make the yoke symmetrical and exchangeable.
     radius = min(first.roller_radius, second.roller_radius)
     return _with_roller(first, radius), _with_roller(second, radius)
@@ -113,7 +113,7 @@ def verify_pair(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verificat
 
 
 def measure_second_cam(problem: CamProblem, mechanism: CamMechanism) -> tuple[list[Check], MeasuredProfile | None]:
-    """Measure the second roller laid against its profile: the rigid follower must carry it there."""
+    """Measure the second roller laid against its profile: the rigid follower must hold it at this position."""
     second, first = mechanism.second, build_core_follower(mechanism)
     assert second is not None
     assert isinstance(first, core.TranslatingRoller | core.OscillatingRoller)
@@ -122,7 +122,7 @@ def measure_second_cam(problem: CamProblem, mechanism: CamMechanism) -> tuple[li
         stretches = find_stretches(mechanism.program)
         follower = build_follower(second.follower.type, second.prime_radius, second.follower)
         assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
-        # The second profile is stored in the first cam's frame; rotate it back into its own.
+        # The second profile is stored in the first cam's frame: rotate it back into its own frame.
         own = transform_between_cams(first, read_points(second.profile))
         contour = Contour(own, np.radians(mechanism.program.angle), stretches.breaks)
         contact = contour.follow(follower, demanded.angle, mechanism.rotation)
@@ -130,8 +130,8 @@ def measure_second_cam(problem: CamProblem, mechanism: CamMechanism) -> tuple[li
     except (DimensionError, ShapeError):
         return [Check(name="second_reproduces_program", passed=False)], None
     apart = second.roller_distance if second.arm_angle is None else math.radians(second.arm_angle)
-    # The second follower's displacement is what the first one lacks to its highest position.
-    # The rollers keep their distance: the second displacement plus the first's is constant.
+    # The second follower's displacement is the distance of the first one below its highest position. The rollers keep
+    # their distance, so that the sum of both displacements is constant.
     off = demanded.deviation(apart - compute_span(first, follower, 0.0) - contact.s)
     measured = build_measured_profile(found, follower.roller_radius, off)
     distance = np.abs(read_points(mechanism.pitch_curve) - read_points(second.pitch_curve)) / second.roller_distance

@@ -1,4 +1,4 @@
-"""The load that a cam moves, in one consistent set of units, and the choice of its spring if the rate is free."""
+"""The follower's load in one consistent set of units, and the choice of the spring if its rate is free."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from synthesis.kinds.cam.statement.followers import FollowerDynamics, Oscillatin
 
 
 def get_arm_length(problem: CamProblem) -> float:
-    """Return the distance from an oscillating roller's pivot to its centre; 1 for translating followers."""
+    """Return the distance from an oscillating follower's pivot to the roller's centre; 1 for translating followers."""
     return problem.follower.arm if isinstance(problem.follower, OscillatingRoller) else 1.0
 
 
 def build_follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
-    """Return the moved load, in a consistent set of units, and the speed in rad/s.
+    """Return the follower's load, in a consistent set of units, and the cam's speed in rad/s.
 
     For an oscillating follower, mass and spring at the arm's end become moments about the pivot. A free preload is
     zero here; the spring's rate must be a number (:func:`with_spring`).
@@ -42,7 +42,7 @@ def convert_rpm(rpm: float) -> float:
 
 
 def find_max_rpm(problem: CamProblem) -> float | None:
-    """Return the speed up to which contact is kept from rest; None if it is kept only at the given speed."""
+    """Return the speed up to which contact must be kept from rest; None if it must only be kept at the given speed."""
     dynamics = problem.dynamics
     assert dynamics is not None
     if dynamics.max_rpm is not None:
@@ -57,7 +57,7 @@ def find_weakest_contact(program: Program, load: FollowerLoad, top_rpm: float) -
 
 
 def compute_min_rate(dynamics: FollowerDynamics, length_unit: str, speed: float) -> float:
-    """Return the spring rate, in the request's units, that the natural frequency requires at a speed in rad/s."""
+    """Return the minimum spring rate, in the request's units, for the required natural frequency; speed in rad/s."""
     return dynamics.mass * METRES[length_unit] * ((dynamics.min_frequency_ratio or 0.0) * speed) ** 2
 
 
@@ -65,7 +65,7 @@ def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spri
     """Return the problem with a number for its spring rate, and the spring if the rate was free.
 
     The chosen spring has the smallest peak contact force at the given speed among those that keep the required force
-    at all speeds from 0 to the greatest, and the natural frequency; in the units of :func:`build_follower_load`.
+    at all speeds from 0 to the maximum, and the natural frequency. It has the units of :func:`build_follower_load`.
     """
     dynamics = problem.dynamics
     if dynamics is None or isinstance(dynamics.spring_rate, float):
@@ -90,9 +90,10 @@ def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spri
 
 @dataclass(frozen=True)
 class PressedFollower:
-    """A follower pressed to its cam: the problem with a number for its spring, and the running cam.
+    """A follower pressed against its cam: the problem with a number for its spring rate, and the running cam.
 
-    ``least_preload`` keeps the required force, up to ``top_rpm`` if that is a number; ``spring`` is the chosen one.
+    ``least_preload`` is the smallest preload that keeps the required force, at all speeds up to ``top_rpm`` if that is
+    a number. ``spring`` is the chosen spring, if the rate was free.
     """
 
     problem: CamProblem
@@ -103,17 +104,17 @@ class PressedFollower:
 
 
 def press_follower(requested: CamProblem, program: Program) -> PressedFollower:
-    """Press the follower to its cam: choose its spring, and the smallest sufficient preload if that is free."""
+    """Press the follower against its cam: choose the spring, and the smallest sufficient preload if it is free."""
     problem, spring = with_spring(requested, program)
     dynamics = problem.dynamics
     assert dynamics is not None
     load, speed = build_follower_load(problem)
     floor, top_rpm = dynamics.least_force * get_arm_length(problem), find_max_rpm(requested)
-    # Without preload, its weakest contact shows how much preload is missing.
+    # The weakest contact without preload gives the missing preload.
     alone = RunningCam(program, replace(load, preload=0.0), speed)
     least = alone.compute_min_preload(floor)
     if top_rpm is not None:
         least = max(least, floor - find_weakest_contact(program, alone.load, top_rpm).force)
-    # In a groove the walls hold the follower, so that a free preload stays zero.
+    # A form-closed follower needs no preload: a free preload stays zero.
     preload = least if dynamics.preload is None and not problem.is_form_closed else load.preload
     return PressedFollower(problem, RunningCam(program, replace(load, preload=preload), speed), least, top_rpm, spring)

@@ -24,7 +24,8 @@ from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.problem import Contradiction, Count, Flag, PositiveNumber, ProblemBase
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}
-"""Metres per length unit for F = m a with newtons and kilograms; lbf, lbf s²/in and inches are consistent."""
+"""Factor from length units for which F = m a holds with newtons and kilograms; lbf, lbf s²/in and inches are
+consistent, so that their factor is 1."""
 
 Criterion = Literal[
     "size",
@@ -168,7 +169,7 @@ class CamProblem(ProblemBase):
         return ProgramStatement(self.segments, self.displacement_unit)
 
     def find_contradictions(self) -> list[Contradiction]:
-        """Return contradictions that no single field shows."""
+        """Return contradictions between several fields."""
         contradictions = [
             *self.program.find_segment_contradictions(),
             *self._check_closure(),
@@ -177,7 +178,7 @@ class CamProblem(ProblemBase):
             *self._check_limits(),
             *self._check_overturning(),
         ]
-        # Joints are checked only if the segments themselves are sound: their ends are undefined otherwise.
+        # Check joints only if the segments themselves are sound, because their ends are undefined otherwise.
         return contradictions or self.program.find_joint_contradictions(self.accept_discontinuity, self.is_form_closed)
 
     @property
@@ -186,7 +187,7 @@ class CamProblem(ProblemBase):
         return self.closure != "force" or isinstance(self.follower, BarrelRoller)
 
     def _check_closure(self) -> list[Contradiction]:
-        """Check the closure: a groove or two cams can only guide a roller."""
+        """Check the form closure: a groove or two cams can only guide a roller."""
         if self.closure != "force" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
             detail = "a groove can only guide a roller; choose a roller follower, or closure `force`"
             if self.closure == "conjugate":
@@ -201,7 +202,7 @@ class CamProblem(ProblemBase):
         return []
 
     def _check_spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
-        """Check a free spring, and the speeds up to which it holds the follower."""
+        """Check a free spring, and the maximum speed at which it must hold the follower."""
         contradictions, rate, speed = [], dynamics.spring_rate, self.speed_rpm
         assert speed is not None
         # Spring and motion cannot both be optimized for the contact force.
@@ -247,7 +248,7 @@ class CamProblem(ProblemBase):
         return contradictions
 
     def _check_overturning(self) -> list[Contradiction]:
-        """Check the overturning moment: it needs forces, and a slide whose lever is known."""
+        """Check the limit on the overturning moment: it requires forces, and a slide with a known lever arm."""
         follower, contradictions = self.follower, []
         forces = self.dynamics is not None
         if isinstance(follower, TranslatingRoller) and follower.overhang is not None:
@@ -276,7 +277,7 @@ class CamProblem(ProblemBase):
         return contradictions
 
     def _check_limits(self) -> list[Contradiction]:
-        """Check that limits on the motion have a motion to choose."""
+        """Check that limits on the motion are only given if some motion is left to choose."""
         if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
             return []
         detail = "all laws are given, so their peaks cannot change; set a law to auto or optimal, or omit the limit"

@@ -1,4 +1,4 @@
-"""Conversion between the analysis core and the answer: degrees and tables outside, radians and exact curves inside."""
+"""Conversion between the analysis core, with radians and exact curves, and the answer, with degrees and tables."""
 
 from __future__ import annotations
 
@@ -27,47 +27,47 @@ from synthesis.kinds.cam.design import (
 from synthesis.mechanisms.cam import build_follower, get_follower_type, list_dimensions
 
 SAME_ANGLE_TOLERANCE = 1e-9
-"""Angle in radians below which a joint and an equal step coincide."""
+"""Angle in radians below which a joint and one of the equal steps count as coincident."""
 
 MAX_EQUAL_STEPS = 5760
 """Maximum number of equal steps of a profile."""
 
 MIN_BREAK_DISTANCE = 0.02
-"""Minimum distance of an equal step from a break, in steps. In a chord much shorter than its neighbours, and in its
-subdivisions, rounding leaves the curvature fewer digits."""
+"""Minimum distance of an equal step from a break, in steps. Rounding costs the curvature digits in a chord that is much
+shorter than its neighbours, and in its subdivisions."""
 
 MIN_POINT_SPACING = 0.1
-"""Point spacing, in equal steps, below which no equal step is placed in between, for the same reason."""
+"""Point spacing, in equal steps, below which no equal step is inserted between points, for the same reason."""
 
 MIN_CHORDS_OF_ROLLER = 5.0
-"""Minimum number of chords of the profile that the roller's radius spans, so that its contact is resolved."""
+"""Minimum number of chords of the profile that the roller's radius must span to resolve the contact."""
 
 
 MIN_COUNT_FACTOR = 1.1
-"""Minimum factor on the number of equal steps if the roller's radius spans too few chords."""
+"""Minimum growth factor of the number of equal steps while the roller's radius spans too few chords."""
 
 MAX_STEP_RATIO = 1.5
-"""Length ratio to a neighbour up to which a step is not divided along with it."""
+"""Ratio of a step's length to the parts of a divided neighbour, up to which the step itself is not divided."""
 
 MAX_PARTS = 8
 """Maximum number of parts into which a step is divided at once."""
 
 JUMP_OFFSET = 1e-7
-"""Angle in radians before a velocity jump at which the profile has a point of the side that ends there."""
+"""Distance in radians before a velocity jump at which an extra point closes the side of the profile that ends there."""
 
 MIN_DIVIDED_ANGLE = 1.5e-7
-"""Radians up to which a stretch between breaks is not divided: the one next to a velocity jump, and no longer ones.
-On longer ones the effect of rounding on the curvature is reported with it."""
+"""Length in radians up to which a stretch between breaks is not divided. It includes the stretch next to a velocity
+jump, but no longer ones: on these the effect of rounding on the curvature is reported with the curvature."""
 
 MIN_STEPS = 2 * MIN_CHORDS
-"""Minimum number of steps of the profile between two sharp bends of the motion. Every second point is enough for one
-of two curves."""
+"""Minimum number of steps of the profile between two sharp bends of the motion, so that a second, coarser curve through
+every other point still has enough chords."""
 
 
 def choose_profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
     """Return the cam angles of a profile: equal steps, the bends, and closer points on short stretches between bends.
 
-    A small roller also needs close points: its radius must span five chords of the curve that it touches.
+    A small roller also needs close points, because its radius must span five chords of the curve that it touches.
     """
     breaks = np.union1d(np.union1d(program.joints[:-1], program.bends), _find_jump_angles(program))
     closer, step = _divide_short_stretches(
@@ -75,16 +75,16 @@ def choose_profile_angles(program: Program, curve: Callable[[Real], Complex], ro
     )
     while True:
         even = space_angles(count)
-        # Bends are always points; equal steps that would crowd them or the closer points give way.
+        # Bends are always points. Equal steps too near to bends, or to the closer points, are dropped.
         even = even[_measure_break_distance(even, breaks) > MIN_BREAK_DISTANCE * TURN / count]
         even = even[_measure_gap(even, np.union1d(breaks, closer)) > MIN_POINT_SPACING * TURN / count]
         others = np.union1d(even, _drop_duplicate_angles(closer, step, even))
-        # A step next to a break would be a chord of no length.
+        # A step that coincides with a break would make a chord of zero length.
         angle: Real = np.union1d(others[_measure_break_distance(others, breaks) > SAME_ANGLE_TOLERANCE], breaks)
         chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
         if chord * MIN_CHORDS_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MAX_EQUAL_STEPS:
             return angle
-        # Chords shrink in proportion to the count; the factor makes sure of progress.
+        # Chords shrink in proportion to the count. The minimum factor ensures progress.
         count = min(
             math.ceil(count * max(chord * MIN_CHORDS_OF_ROLLER / roller_radius, MIN_COUNT_FACTOR)), MAX_EQUAL_STEPS
         )
@@ -116,7 +116,7 @@ def _divide_short_stretches(breaks: Real, sharp: Real, count: int) -> tuple[Real
     span = np.diff(ends)
     beside = np.isin(ends[:-1], sharp) | np.isin(ends[1:], sharp)
     few = np.diff(np.searchsorted(angle, ends)) < MIN_CHORDS - 1
-    # A curve must not run over a sharp bend just because another bend is near it.
+    # A curve must not run across a sharp bend just because another bend is near.
     own = beside & few & (span > MIN_DIVIDED_ANGLE) & (span < MIN_CHORDS * TURN / count)
     others = ~own[np.searchsorted(ends, angle, side="right") - 1]
     shortest = [np.linspace(ends[k], ends[k + 1], MIN_CHORDS + 1)[1:-1] for k in np.flatnonzero(own)]
@@ -148,27 +148,27 @@ def _drop_duplicate_angles(angle: Real, step: Real, even: Real) -> Real:
     if not len(even):
         return angle
     around = np.clip(np.searchsorted(even, angle)[:, None] - [1, 0], 0, None) % len(even)
-    # 0.4 of a step: less than half, so that every stretch keeps at least the points of its division.
+    # 0.4 of a step is less than half a step, so that every stretch keeps at least the points of its division.
     return np.asarray(angle[np.abs(angle[:, None] - even[around]).min(axis=1) > 0.4 * step])
 
 
 def _find_jump_angles(program: Program) -> Real:
-    """Return cam angles just before velocity jumps, at which the profile's corners need a second point."""
+    """Return cam angles just before velocity jumps, at which the corners of the profile need a second point."""
     return np.sort(np.mod(program.velocity_jumps - JUMP_OFFSET, TURN))
 
 
 def refine_angles(angle: Real, off: Real, allowed: float) -> Real:
-    """Divide steps whose deviation exceeds half of the permitted one, and their neighbours.
+    """Divide the steps with a deviation above half of the permitted value, and their neighbours.
 
-    The deviation falls with the fourth power of the step if the curvature is smooth; at its bends it falls more slowly,
-    and the next round divides again.
+    The deviation falls with the fourth power of the step if the curvature is smooth. At bends of the curvature it falls
+    more slowly, and the next round divides again.
     """
     closed = np.append(angle, TURN + angle[0])
-    # Fourth root: the number of parts that brings the deviation to half of the permitted value.
+    # The fourth root gives the number of parts that reduces the deviation to half of the permitted value.
     parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, MAX_PARTS).astype(np.int64)
     whole = np.diff(closed)
     for beside in (-1, 1):
-        # A step that is as short as its neighbour's parts stays as it is.
+        # A step about as short as its neighbour's parts is not divided.
         longer = whole > MAX_STEP_RATIO * np.roll(whole / parts, beside)
         # A neighbour of a divided step is halved, so that step lengths change gradually.
         parts = np.where(longer, np.maximum(parts, np.minimum(np.roll(parts, beside), 2)), parts)
@@ -184,7 +184,7 @@ def build_cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMecha
     oscillating = isinstance(cam.follower, core.OscillatingRoller | core.OscillatingFlat)
     unit = 180.0 / math.pi if oscillating else 1.0
     degrees = np.degrees(angle).tolist()
-    # A roller's cam is sized by its prime circle, a face's by its base circle.
+    # The prime circle gives the size of a roller's cam, the base circle that of a face's cam.
     roller = isinstance(cam.follower, core.TranslatingRoller | core.OscillatingRoller)
     return CamMechanism(
         follower=CamFollower(
@@ -202,7 +202,7 @@ def build_cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMecha
 
 
 def _collect_dimensions(follower: core.Follower) -> dict[str, float]:
-    """Return a follower's own dimensions; a face's offset does not change the cam and is given only if it is not 0."""
+    """Return a follower's own dimensions; the offset of a face, which does not change the cam, only if it is not 0."""
     own = {name: getattr(follower, name) for name in list_dimensions(type(follower))}
     if isinstance(follower, core.TranslatingFlat) and follower.offset == 0.0:
         del own["offset"]
@@ -242,12 +242,12 @@ def _build_curve(degrees: list[float], points: Complex) -> CamCurve:
 
 
 def build_core_follower(mechanism: CamMechanism) -> core.Follower:
-    """Return the follower of a mechanism for the analysis core, from its dimensions alone.
+    """Build a mechanism's follower for the analysis core, from its dimensions alone.
 
     Raises
     ------
     DimensionError
-        For dimensions that no follower can have.
+        If no follower can have these dimensions.
     """
     stated = mechanism.follower
     radius = mechanism.prime_radius if stated.type.endswith("roller") else mechanism.base_radius
@@ -260,7 +260,7 @@ def read_points(curve: CamCurve) -> Complex:
 
 
 def find_stretches(program: ProgramTable) -> Stretches:
-    """Return how the breaks of the motion divide a profile, which has the table's cam angles."""
+    """Return the stretches into which the breaks of the motion divide a profile with the table's cam angles."""
     count = len(program.angle)
     breaks = np.flatnonzero(np.isin(program.angle, program.breaks))
     if not len(breaks):

@@ -79,40 +79,40 @@ UNFIXABLE_CHECKS = {
 """Checks that more points cannot repair."""
 
 PEAK_CHECKS = {"peak_velocity", "peak_acceleration", "peak_jerk"}
-"""Checks of differenced measurements, which fail with too few points although the program keeps the limit."""
+"""Checks of differenced measurements, which fail with too few points even if the program keeps the limit."""
 
 HALVING_DEVIATION = 7.0
-"""Deviation, in units of the permitted one, for which :func:`refine_angles` divides a step in two."""
+"""Deviation, as a multiple of the permitted one, for which :func:`refine_angles` divides a step in two."""
 
 PEAK_ACCELERATIONS = (6.0, 8.0, 11.0, 16.0)
-"""Peak accelerations, in units of lift and angle squared, tried to trade size by pressure angle against curvature."""
+"""Limits on the acceleration, in units of lift over angle squared, tried to trade pressure angle against curvature."""
 
 JERK_SHARE = 25.0
-"""Peak jerk that goes with them: the acceleration may change fully within an eighth of the angle of a segment."""
+"""Limit on the jerk that goes with them: the acceleration may change fully within an eighth of a segment's angle."""
 
 BOUND_TOLERANCE = 0.01
-"""Share by which a cam may exceed the bound and still end the search."""
+"""Excess of a cam's size over the bound, as a share, at which the search ends."""
 
 MIN_CURVATURE = 1e-300
-"""Curvature that stands for a straight pitch curve, which allows a roller of any radius."""
+"""Positive substitute for the curvature of a straight pitch curve, which allows a roller of any radius."""
 
 MIN_BASE_SHARE = 1e-3
 """Minimum base radius of a cam, as a share of the travel, if the client requests no hub."""
 
 
 MAX_SHORTFALL = 1e-3
-"""Relative shortfall of the curvature that counts as an error of measurement, after which the cam is sized again."""
+"""Maximum relative shortfall of the curvature that counts as a measurement error, for which the cam is sized again."""
 
 
 def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
-    """Solve a cam problem."""
+    """Find the best motion program of a cam problem and the smallest cam for it, and verify them."""
     progress(0.05, "composing the motion program")
     composed = compose(problem, progress=progress, reach=(0.05, 0.4))
     if isinstance(composed, NoProgram):
         return build_empty_result(problem, composed.reason, composed.proven, "motion_limits")
     composed = _smooth_motion(problem, composed, progress)
     if not problem.accept_discontinuity and not composed.program.obeys_fundamental_law:
-        # Automatic laws may still leave a jump between segments; report the first one.
+        # Automatic laws may still leave a jump between segments: report the first one.
         joint = next(joint for joint in composed.program.continuity if not all(joint.continuous[:3]))
         where = f"/segments/{joint.segments[1]}"
         raise ContradictionError(Contradiction(where, "the motion is not continuous there; see accept_discontinuity"))
@@ -127,11 +127,11 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         elif isinstance(follower, OscillatingRoller):
             proven = proven and not isinstance(follower.pivot_distance, LengthRange)
         else:
-            # The width of an arm's face is checked on a grid of start angles only, which proves nothing.
+            # The width of an arm's face is only checked on a grid of start angles, which is no proof.
             proven = proven and problem.limits.face_width is None
         reason = "no cam of any size follows the program within the limits on pressure angle, curvature and face width"
         return build_empty_result(problem, reason, proven, "size")
-    # With conjugate closure the second cam follows from the first one's program.
+    # With conjugate closure, the second cam follows from the program of the first.
     cam, size = sized
     cams = _add_second_cam(problem, cam)
     if cams is None:
@@ -140,7 +140,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     progress(0.7, "verifying")
     mechanism, verification, measured = _verify_cams(problem, cams, progress)
     tighter = _tighten_curvature(problem, verification)
-    # A second sizing, with a slightly tighter curvature, makes up for the error of the measurement.
+    # A second sizing with a slightly tighter limit on curvature compensates for the measurement error.
     if tighter is not None and (larger := _size_cam(tighter, composed.program)) is not None:
         cams, size = _add_second_cam(tighter, larger[0]) or cams, larger[1]
         mechanism, verification, measured = _verify_cams(problem, cams, progress)
@@ -179,11 +179,10 @@ def _add_second_cam(problem: CamProblem, cam: Cam) -> tuple[Cam, ...] | None:
 def _verify_cams(
     problem: CamProblem, cams: tuple[Cam, ...], progress: Progress
 ) -> tuple[CamMechanism, Verification, MeasuredProfile | None]:
-    """Return the finished cams, their checks and the measurements; None if the follower cannot be laid on."""
+    """Return the finished cams, their checks and the measurements, None if the follower cannot touch the profile."""
     cam, groove = cams[0], problem.closure == "form"
     curves = [cam.profile, cam.outer_wall] if groove else [one.profile for one in cams]
-    # Both curves share their angles: those of the curve that needs more of them.
-    # Every curve that a roller touches asks for points of its own.
+    # All curves that a roller touches share their angles, those of the curve that needs the most points.
     laid = [choose_profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
     make: Callable[[Real], CamMechanism] = partial(build_cam_mechanism, cam, groove=groove)
     if len(cams) > 1:
@@ -193,15 +192,15 @@ def _verify_cams(
 
 
 def _tighten_curvature(problem: CamProblem, verification: Verification) -> CamProblem | None:
-    """Tighten the curvature limit so that the measured curvature meets the requested one.
+    """Tighten the curvature limit so that the measured curvature satisfies the requested limit.
 
-    Sizes are exact; the finished cam is measured through its points, on the safe side. None unless only a little
-    curvature is missing.
+    Sizes are exact, whereas the measurement through the points of the finished cam errs on the safe side. Return None
+    unless the shortfall is small and concerns only curvature.
     """
     failed = [check for check in verification.checks if not check.passed]
     if not failed or {check.name for check in failed} - {"curvature_ratio", "second_curvature_ratio"}:
         return None
-    # The largest shortfall decides; failed checks have a limit and a value.
+    # The largest shortfall decides. Failed checks have a limit and a value.
     short = max((check.limit or 0.0) / (check.value or math.inf) - 1.0 for check in failed)
     if not 0.0 < short < MAX_SHORTFALL:
         return None
@@ -222,17 +221,17 @@ def _explain_no_contact(cam: Cam) -> str:
 
 
 def _smooth_motion(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:
-    """For minimum size: find the motion whose cam is smallest if curvature counts as well.
+    """Find, for minimum size, the motion with the smallest cam under limits on curvature as well.
 
-    The convex program considers pressure angle, not the curvature of a roller's pitch curve, and the motion of minimum
-    size is abrupt if no limit holds its acceleration. So it is solved again under limits on acceleration and jerk, and
-    the smallest of the cams is used. The bound remains that of all motions.
+    The convex program considers the pressure angle but not the curvature of a roller's pitch curve, and the motion of
+    minimum size is abrupt unless its acceleration is limited. The program is therefore solved again under several
+    limits on acceleration and jerk, and the smallest of the cams is used. The lower bound remains that of all motions.
     """
     if problem.minimize != "size" or composed.bound is None or get_roller_radius_range(problem) is None:
         return composed
     stated = problem.limits
     unlimited = stated.acceleration is None and stated.jerk is None
-    # Without limits of its own the first motion has unusable spikes, so its cam is not a candidate.
+    # Without requested limits the first motion has unusable spikes, so that its cam is not a candidate.
     best, least = composed, math.inf if unlimited else _compute_radius(problem, composed)
     span = min(s.angle for s in composed.program.segments if s.pieces.count > 1)
     for n, share in enumerate(PEAK_ACCELERATIONS):
@@ -245,7 +244,7 @@ def _smooth_motion(problem: CamProblem, composed: Composition, progress: Progres
             update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
         )
         reach = 0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), 0.4 + 0.1 * (n + 1) / len(PEAK_ACCELERATIONS)
-        # The coarse grid suffices to compare sizes; the bound comes from the first solution.
+        # The coarse grid suffices to compare sizes. The bound comes from the first solution.
         other = compose(problem.model_copy(update={"limits": limits}), GRID_STEP_COUNTS[:1], progress, reach)
         if isinstance(other, Composition):
             radius = _compute_radius(problem, other)
@@ -260,7 +259,7 @@ def _compute_radius(problem: CamProblem, composed: Composition) -> float:
 
 
 def _refine_profile(angle: Real, measured: MeasuredProfile, failed: set[str]) -> Real | None:
-    """Return a finer set of angles if the profile has too few points; None if more points do not help."""
+    """Return a refined set of angles if the profile has too few points; None if more points do not help."""
     if failed & UNFIXABLE_CHECKS:
         return None
     if failed & {"reproduces_program", "outer_wall_reproduces_program", "second_reproduces_program"}:
@@ -275,7 +274,7 @@ def _refine_profile(angle: Real, measured: MeasuredProfile, failed: set[str]) ->
 
 
 def _size_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
-    """Return the smallest cam, or the one of given radius; None if no radius is feasible."""
+    """Return the smallest cam, or the cam of given radius; None if no radius is feasible."""
     follower, limits = problem.follower, problem.limits
     rollers = get_roller_radius_range(problem)
     try:
@@ -293,7 +292,7 @@ def _size_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
                 size = Size(follower.prime_radius, True)
             elif follower.offset == "free":
                 centred = size_translating_roller(program, 0.0, roller_limits)
-                # The best offset is smaller than the radius of a centred follower, which would be a worse cam.
+                # An offset beyond the radius of the cam for a centred follower would give a larger cam.
                 widest = centred.radius if centred is not None else program.lift * 10.0
                 size = search_offset(program, roller_limits, (-widest, widest))
             else:
@@ -322,9 +321,9 @@ def _size_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
 
 
 def _compute_min_base(problem: CamProblem, program: Program) -> float:
-    """Return the least radius of the base circle: the hub's, or the least that leaves a cam around its centre.
+    """Return the minimum radius of the base circle: the hub's, or the smallest that leaves a cam around its centre.
 
-    The travel of an arm is that of its roller, or of a face at the pivot's distance.
+    The travel of an arm is that of its roller, or that of a face at the pivot distance.
     """
     follower = problem.follower
     reach = get_arm_length(problem) if isinstance(follower, OscillatingRoller) else 1.0
@@ -333,7 +332,7 @@ def _compute_min_base(problem: CamProblem, program: Program) -> float:
 
 
 def _size_flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
-    """Return the smallest cam under a flat face, or the one of given radius; None if no radius is feasible."""
+    """Return the smallest cam under a flat face, or the cam of given radius; None if no radius is feasible."""
     follower, limits = problem.follower, problem.limits
     least = _compute_min_base(problem, program)
     size: Size | None
@@ -362,7 +361,7 @@ def _fit_largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
     assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
     if largest <= follower.roller_radius:
         return cam
-    # The largest roller whose offset curve keeps the required ratio to the pitch curve.
+    # This is the largest roller with the required ratio of the pitch curve's radius of curvature to its own radius.
     curvature = max(cam.pitch_curvature_extremes.largest, MIN_CURVATURE)
     allowed = 1.0 / curvature / compute_min_pitch_radius(problem.limits, 1.0)
     fits = follower.prime_radius - _compute_min_base(problem, cam.program)

@@ -1,4 +1,4 @@
-"""Dwells: sixbars whose output rests while the crank turns on."""
+"""Dwells: sixbars whose output rests while the crank continues to turn."""
 
 from __future__ import annotations
 

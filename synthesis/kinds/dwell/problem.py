@@ -1,4 +1,4 @@
-"""Problems of dwells: a sixbar whose output rests, once or more often in a turn, while its crank turns on."""
+"""Problems of dwells: a sixbar whose output rests, once or more often in a turn, while its crank continues to turn."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ DEFAULT_CRANK = 10.0
 
 
 MIN_PLACE_SEPARATION = 0.1
-"""Minimum separation of the places of two dwells, as a share of the output's range: twice :data:`PLACE_TOLERANCE`, so
-that they differ."""
+"""Minimum separation of the places of two dwells, as a share of the output's range. It is twice
+:data:`PLACE_TOLERANCE`, so that the dwells are distinct."""
 
 PLACE_TOLERANCE = 0.05
 """Maximum distance of a dwell's mean from its place in the output's range, as a share of the range."""

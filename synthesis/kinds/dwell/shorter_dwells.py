@@ -1,4 +1,4 @@
-"""Nearest miss of dwells that no design has: the same dwells, all shortened by one share."""
+"""Nearest miss if no design has the requested dwells: the same dwells, all shortened to one share of their lengths."""
 
 from __future__ import annotations
 

@@ -41,11 +41,11 @@ GAIN_TOLERANCE = 1e-2
 """Relative gain of a step below which refinement stops: the jitter is far below the tolerance, or stays above it."""
 
 LINK_RATIO_SHARE = 0.99
-"""Share of a required link ratio that is used: the output's pivot is moved a little at the end, to make the range
-exact."""
+"""Share of the permitted link ratio that is used, because the output's pivot is moved a little at the end to make the
+range exact."""
 
 ANGLE_MARGIN = 1.0
-"""Degrees added to a required transmission angle, because it is less between the angles evaluated."""
+"""Margin added to a required transmission angle, degrees, because it is smaller between the crank angles evaluated."""
 
 MAX_STARTS, SUFFICIENT_DESIGNS = 8, 5
 """Maximum number of starts refined for each type, and number of sound designs that ends the search."""
@@ -54,7 +54,7 @@ SUFFICIENT_SHAPES = 8
 """Number of shapes within the tolerance that ends refinement, for dwells with places of their own."""
 
 PERTURBED_COUNT = 4
-"""Number of shapes with the least movement that are perturbed at a time."""
+"""Number of shapes with the smallest movement that are perturbed at a time."""
 
 DUPLICATE_TOLERANCE = 0.02
 """Two shapes are duplicates if no number differs by more than this share of the largest."""
@@ -190,8 +190,10 @@ def _find_starts(problem: DwellProblem, search: _Search, rng: np.random.Generato
 
 
 def warm_up() -> None:
-    """Compile or load the kernels: of arcs and pairs by a rocker with two dwells, of lines by a slot with one, and of
-    triads."""
+    """Compile or load the kernels.
+
+    A rocker with two dwells covers arcs and pairs, a slotted link with one dwell covers lines; triads follow.
+    """
     rng = np.random.default_rng(0)
     one, two = (
         Requirements(count * (0.5,), (LOW_PLACE, HIGH_PLACE)[:count], 0.7, 0.3, DEFAULT_LINK_RATIO) for count in (1, 2)
@@ -258,7 +260,7 @@ def _perturb_stillest(found: list[_RefinedShape], effort: _Effort, rng: np.rando
 
 
 def _refine_at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_RefinedShape]) -> list[_RefinedShape]:
-    """Refine the stillest shapes again with larger transmission angles: the trade-off shows the cost of these."""
+    """Refine the stillest shapes again with larger transmission angles, to offer designs that transmit better."""
     best = sorted(refined, key=lambda one: one.moved)[:REPEATED_COUNT]
     stated = _get_min_transmission(problem)
     larger = [angle for angle in map(math.radians, LARGER_ANGLES) if angle > stated]
@@ -289,8 +291,10 @@ def _is_duplicate(one: SixbarShape, other: SixbarShape) -> bool:
 
 
 def _get_distinguishing_numbers(sixbar: SixbarShape) -> Real:
-    """Return numbers that distinguish sixbars; for a triad C on the crank and the distances, which its mirror image
-    shares."""
+    """Return numbers that distinguish sixbars.
+
+    For a Stephenson II these are C on the crank and the distances of pins, which do not depend on the crank's angle.
+    """
     if sixbar.kind != "triad":
         return sixbar.shape[: -sixbar.dwells]
     return np.append(stephenson_2.compute_pin_distances(sixbar.shape[None])[0], sixbar.shape[C : C + 2])

@@ -1,7 +1,8 @@
 """Verify a dwell sixbar: drive the crank through a full turn, and find the output's rests.
 
-A dwell is where the output moves least while the crank turns by the required angle; two equal ones are searched near
-the ends of the output's range, those with given places near these. The times of dwells within the turn are free.
+A dwell is measured in the interval of the required crank rotation in which the output moves least. Two equal dwells are
+searched near the ends of the output's range, dwells with requested places near those places. The times of the dwells
+within the turn are free.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An engine's cylinders: axis, throw, phase and place of each, from a layout and the phases of its throws."""
+"""The cylinders of an engine: axis, throw, phase and place of each, from a layout and the phases of its throws."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from synthesis.kinds.engine.problem import BANK_COUNTS, EngineLayout
 
 
 class Cylinders(NamedTuple):
-    """Cylinders in the order of their numbers; degrees, and spacings along the shaft.
+    """Cylinders in the order of their numbers; angles in degrees, places along the shaft in cylinder spacings.
 
-    ``throw`` is the number of each cylinder's throw from 0, ``axis`` its direction from the engine's own, positive to
-    the left, and ``phase`` the lag of its throw.
+    ``throw`` is the index of each cylinder's throw, counted from 0. ``axis`` is the cylinder's direction from the
+    engine's own axis, positive to the left. ``phase`` is the lag of its throw.
     """
 
     throw: NDArray[np.int64]
@@ -38,7 +38,7 @@ def list_axes(layout: EngineLayout, cylinders: int) -> list[list[float]]:
     # Banks are spread symmetrically about the engine's own axis.
     half = 90.0 if layout.type == "opposed" else 0.5 * (banks - 1) * (layout.vee_angle or 0.0)
     step = 0.0 if banks == 1 else 2.0 * half / (banks - 1)
-    # From left to right.
+    # List the banks from left to right.
     row = [half - step * n for n in range(banks)]
     if layout.first_bank == "right":
         row.reverse()
@@ -50,7 +50,7 @@ def list_axes(layout: EngineLayout, cylinders: int) -> list[list[float]]:
 
 
 def arrange_cylinders(layout: EngineLayout, cylinders: int, throws: Sequence[float]) -> Cylinders:
-    """Arrange the cylinders of an engine whose throws lag by these phases."""
+    """Arrange the cylinders of an engine for the given phases of its throws, degrees."""
     axes = list_axes(layout, cylinders)
     places = layout.positions or [float(n) for n in range(len(throws))]
     listed = [(n, axis, throws[n], places[n]) for n, row in enumerate(axes) for axis in row]

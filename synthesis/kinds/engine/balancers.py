@@ -21,13 +21,13 @@ NEGLIGIBLE_PART = 1e-9
 """Part of a harmonic, in units of one cylinder's, that counts as zero."""
 
 POSITION_COUNT = 1440
-"""Number of positions of a turn over which peaks are taken: a quarter of a degree apart."""
+"""Number of positions per turn for peaks, at a spacing of a quarter of a degree."""
 
 
 def find_balancers(problem: EngineProblem, cylinders: Cylinders, series: dict[int, float]) -> list[Balancer]:
     """Find balancers of the first two orders, forces first; moments are about the middle of the engine."""
     axis, top = np.radians(cylinders.axis), np.radians(cylinders.top)
-    # The crank angle is 0 when its first throw is: at the top dead centre of an upright cylinder there.
+    # The crank angle is 0 if the first throw is at the top dead centre of an upright cylinder.
     turned = float(np.radians(cylinders.phase[0]))
     places = cylinders.place - compute_middle(cylinders.place)
     found = []
@@ -45,14 +45,14 @@ def find_balancers(problem: EngineProblem, cylinders: Cylinders, series: dict[in
 def _build_balancer(
     problem: EngineProblem, against: str, order: int, forward: complex, backward: complex, coefficient: float
 ) -> Balancer | None:
-    """Build weights opposite to both parts: m R (kω)² = part · m_B r ω² A_k."""
+    """Build weights opposite to both parts of a harmonic, with m R (kω)² = part · m_B r ω² A_k."""
     sizes = abs(forward), abs(backward)
     if max(sizes) <= NEGLIGIBLE_PART:
         return None
-    # A weight at k times the crank's speed has k² times the effect.
+    # A weight that rotates at k times the crank's speed has k² times the effect.
     share = coefficient / order**2
     form: Literal["crankshaft_weights", "counter_shaft", "lanchester_pair", "shafts"] = "shafts"
-    # The form follows from the parts: equal ones are a planar harmonic, a single one rotates.
+    # Equal parts form a planar harmonic; a single part is a rotating vector.
     if abs(sizes[0] - sizes[1]) <= NEGLIGIBLE_PART:
         form = "lanchester_pair"
     elif sizes[1] <= NEGLIGIBLE_PART and order == 1:
@@ -81,7 +81,7 @@ def _compute_opposite_angle(part: complex) -> float:
 def compute_peak(problem: EngineProblem, speed: float, *, turning: bool, share: float) -> float:
     """Compute the peak shaking force of one cylinder whose counterweight carries a share of m_B.
 
-    ``turning``: whether all rotating masses are balanced too. Norton, Sec. 13.10; peaks over quarters of a degree.
+    ``turning`` tells whether all rotating masses are balanced, too (Norton, Sec. 13.10).
     """
     degrees = 360.0 * np.arange(POSITION_COUNT) / POSITION_COUNT
     return _compute_peak_of_force(
@@ -96,7 +96,7 @@ def _compute_uncountered_force(
     unit = speed**2 * np.exp(1j * np.radians(degrees))
     own = masses.turning
     if turning:
-        # Balanced exactly: neither the throw nor the rod's part at its pin remains.
+        # Exact balance cancels both the throw and the rod's part at the crank pin.
         own = -masses.rod.crank_pin * problem.scale * problem.crank
     return np.asarray(shaking + own * unit)
 
@@ -110,7 +110,7 @@ def _compute_peak_of_force(
 
 
 def find_overbalance(problem: EngineProblem, speed: float) -> Overbalance:
-    """Find the share of minimum peak, in which the peak is convex."""
+    """Find the share of m_B on the counterweight for the minimum peak, which is a convex function of the share."""
     degrees = 360.0 * np.arange(POSITION_COUNT) / POSITION_COUNT
     force = _compute_uncountered_force(problem, speed, degrees, turning=True)
     best = minimize_scalar(

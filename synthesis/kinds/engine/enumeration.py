@@ -1,14 +1,16 @@
-"""All arrangements of an engine's throws that fire evenly; equivalent ones (by turn, mirror, other end) once.
+"""Enumeration of all arrangements of an engine's throws that fire evenly, equivalent ones only once.
 
-Even firing puts the top dead centres on slots: n slots with one cylinder each, or in a four-stroke engine with an even
-number of cylinders n/2 with two each. A throw with cylinders of several banks occupies the slots of all of them, so
-that only banks whose angles are whole numbers of slots apart can share throws. An arrangement is a word: the slot of
-the first cylinder of each throw. Words are built one throw after the other, from the free slots.
+Arrangements are equivalent if they differ by a rotation, by a mirror, or by counting from the other end.
 
-For more than eight throws, each with one cylinder, words are counted by Burnside's lemma. No turn alone, and no mirror
-of more than two slots, leaves a word unchanged. Counted from the other end it may be unchanged, if pairs of places
-p, N − 1 − p have slots s, π(s), π an involution: a half turn, or a mirror. With f slots fixed by π and t pairs that it
-exchanges, of capacity c, there are (N/2)!/((c/2)!^f c!^t) 2^(tc) of them.
+Even firing puts the top dead centres on slots: n slots with one cylinder each, or, in a four-stroke engine with an even
+number n of cylinders, n/2 slots with two each. A throw with cylinders of several banks occupies the slots of all of
+them, so that banks can only share throws if the angles between them are whole numbers of slots. An arrangement is a
+word: the slot of the first cylinder of each throw. Words are built one throw after the other, from the free slots.
+
+For more than eight throws, each with one cylinder, words are counted by Burnside's lemma. No rotation alone, and no
+mirror of more than two slots, leaves a word unchanged. Counting from the other end may leave it unchanged, if the
+places p and N − 1 − p of every pair have the slots s and π(s), where π is an involution: a half turn, or a mirror. If π
+fixes f slots and exchanges t pairs of slots of capacity c, there are (N/2)!/((c/2)!^f c!^t) 2^(tc) such words.
 """
 
 from __future__ import annotations
@@ -27,17 +29,17 @@ MAX_LISTED_THROWS = 8
 """Number of throws up to which all arrangements are listed."""
 
 MAX_SAMPLED = 5040
-"""Maximum number of listed symmetric arrangements of more throws."""
+"""Maximum number of symmetric arrangements that are listed for more throws."""
 
 SLOT_TOLERANCE = 1e-9
-"""Slots by which an angle between banks may miss a whole number of them."""
+"""Permitted deviation of an angle between banks from a whole number of slots, in slots."""
 
 ANGLE_DIGITS = 7
 """Decimals of a degree to which arrangements are compared."""
 
 
 class Arrangements(NamedTuple):
-    """Phases of throws, degrees: the listed ones, the number of all, and whether all are listed."""
+    """The listed phases of throws in degrees, the number of all arrangements, and whether all are listed."""
 
     phases: list[tuple[float, ...]]
     total: int
@@ -45,7 +47,7 @@ class Arrangements(NamedTuple):
 
 
 class Slots(NamedTuple):
-    """Places of even firing within a turn: their number, cylinders per slot, and degrees between slots."""
+    """Slots of even firing within a turn: their number, the cylinders per slot, and the degrees between slots."""
 
     number: int
     capacity: int
@@ -117,9 +119,9 @@ def _reduce_angle(angle: float) -> float:
 
 
 def _list_symmetries(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
-    """List the symmetries of the cylinders: mirror (−1) or none, and whether they are counted from the other end.
+    """List the symmetries of the cylinders: mirror (−1) or none (1), and whether to count from the other end.
 
-    The engine may also be turned by half: this maps opposed cylinders to those of the other bank.
+    The engine may also be rotated by a half turn, which maps opposed cylinders to those of the other bank.
     """
     axes = list_axes(layout, cylinders)
     places = layout.positions or list(range(len(axes)))
@@ -137,7 +139,7 @@ def _list_symmetries(layout: EngineLayout, cylinders: int) -> list[tuple[float, 
 
 
 def _enumerate_words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
-    """Yield words whose first letter is 0; ``taken`` are the slots that a throw occupies relative to its first."""
+    """Yield the words with first letter 0; ``taken`` are the slots that a throw occupies relative to its first one."""
     # Free places per slot.
     left = [slots.capacity] * slots.number
     word: list[int] = []
@@ -149,7 +151,7 @@ def _enumerate_words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int
         for slot in range(slots.number if word else 1):
             used = [(slot + step) % slots.number for step in taken[len(word)]]
             for one in used:
-                # A slot may be used twice by one throw, hence the check after all decrements.
+                # One throw may use a slot twice: check only after all decrements.
                 left[one] -= 1
             if all(left[one] >= 0 for one in used):
                 word.append(slot)
@@ -167,7 +169,7 @@ def _list_symmetric_words(problem: EngineProblem, slots: Slots, throws: int) -> 
         for half in itertools.permutations(range(1, slots.number)):
             yield (0, *half, *reversed(half), 0)
         return
-    # There are too many to list: a random sample is drawn.
+    # If there are too many to list, draw a random sample.
     rng = np.random.default_rng(problem.seed)
     for _ in range(MAX_SAMPLED):
         last = int(rng.integers(1, slots.number))
@@ -186,7 +188,7 @@ def _count_arrangements(layout: EngineLayout, slots: Slots, throws: int) -> int:
     """Count the arrangements of throws with one cylinder each, by Burnside's lemma; more than two slots."""
     m, c = slots.number, slots.capacity
     alike = _list_symmetries(layout, throws)
-    # Every turn of the shaft is combined with each of these; only involutions leave a word unchanged.
+    # Every rotation of the shaft is combined with each of these. Only involutions leave a word unchanged.
     halves = {0, m // 2} if m % 2 == 0 else {0}
     turns = [[(s + r) % m for s in range(m)] for r in halves if (1.0, True) in alike]
     mirrors = [[(r - s) % m for s in range(m)] for r in range(m) if (-1.0, True) in alike]
@@ -195,7 +197,7 @@ def _count_arrangements(layout: EngineLayout, slots: Slots, throws: int) -> int:
 
 
 def _count_fixed_words(image: list[int], capacity: int, throws: int) -> int:
-    """Count the words that are their own image from the other end, for an involution of the slots."""
+    """Count the words that an involution of the slots, combined with counting from the other end, leaves unchanged."""
     kept = sum(image[slot] == slot for slot in range(len(image)))
     pairs = (len(image) - kept) // 2
     half = throws // 2

@@ -12,16 +12,16 @@ from synthesis.kinds.engine.design import EngineFiring, FiringOrder
 from synthesis.kinds.engine.problem import EngineProblem
 
 MAX_ORDERS = 64
-"""Maximum number of listed orders."""
+"""Maximum number of listed firing orders."""
 
 
 def find_firing(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
-    """Find the most even firing orders, with the fewest successive neighbours first if requested."""
+    """Find the most even firing orders; if requested, those with the fewest neighbours in succession come first."""
     found = list_firing_choices(cylinders.top, problem.stroke_cycle)
     orders: dict[tuple[int, ...], FiringOrder] = {}
     for angles in found.angles:
         listed = _build_order(angles, cylinders)
-        # An order and its reverse count as one: the one that names the higher cylinder first represents both.
+        # An order and its reverse count as one. The order that names the higher cylinder first represents both.
         known = orders.get(tuple(listed.reversed))
         if known is None or known.order < listed.order:
             orders.pop(tuple(listed.reversed), None)
@@ -61,7 +61,7 @@ def _count_adjacent(number: NDArray[np.int64], cylinders: Cylinders) -> int:
         return 0
     following = np.roll(number, -1)
     same = np.abs(cylinders.axis[number] - cylinders.axis[following]) <= ANGLE_TOLERANCE
-    # Rank in a bank: the number of distinct places of its cylinders before each.
+    # The rank of a cylinder in its bank is the number of distinct places before it.
     rows = [np.unique(cylinders.place[np.abs(cylinders.axis - axis) <= ANGLE_TOLERANCE]) for axis in cylinders.axis]
     rank = np.array([int((row < place).sum()) for row, place in zip(rows, cylinders.place, strict=True)])
     return int((same & (np.abs(rank[number] - rank[following]) == 1)).sum())

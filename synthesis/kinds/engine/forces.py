@@ -1,8 +1,8 @@
 """Forces of an engine at a speed: one cylinder's in closed form, and their sums over the engine.
 
 For one cylinder, x is along its axis away from the crank and y to the left of it, with the crank at θ after top dead
-centre (Norton, *Design of Machinery*, eq. 13.6, 13.15, 13.20-13.23), m_B all reciprocating mass, m_p the piston's
-part of it, and m_3a, m_3b the rod as two masses at the crank pin and at the wrist pin:
+centre (Norton, *Design of Machinery*, eq. 13.6, 13.15, 13.20-13.23). m_B is the whole reciprocating mass, m_p the
+piston's part of it, and m_3a, m_3b are the equivalent masses of the rod at the crank pin and at the wrist pin:
 
     side force of the piston on the wall     −(m_B a + F_g) tan φ
     rod on piston                            (m_p a + F_g, side)
@@ -28,7 +28,7 @@ from synthesis.kinds.engine.problem import EngineProblem
 from synthesis.model.dynamics.loads import PairRows
 
 STEPS_PER_TURN = 1440
-"""Number of positions of a turn."""
+"""Number of positions per turn."""
 
 
 class Cylinder(NamedTuple):
@@ -56,7 +56,7 @@ class Engine(NamedTuple):
 
 
 class Masses(NamedTuple):
-    """Masses of one cylinder; ``turning`` is mass times radius of its throw, without the rod's part."""
+    """Masses of one cylinder; ``turning`` is the mass times radius of its throw, without the rod's part."""
 
     piston: float
     rod: Rod
@@ -81,7 +81,7 @@ def compute_gas_force(problem: EngineProblem, angle: Real) -> Real:
         return np.zeros_like(angle)
     rows: PairRows = problem.pressure.table
     at, value = (np.array(column) for column in zip(*rows, strict=True))
-    # Close the table by its first row if it does not cover the whole cycle.
+    # Close the table with its first row if it does not cover the whole cycle.
     if at[-1] - at[0] < problem.cycle:
         at, value = np.append(at, at[0] + problem.cycle), np.append(value, value[0])
     value[-1] = value[0]
@@ -102,7 +102,7 @@ def compute_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cyl
     rod, square = masses.rod, speed**2
     to_and_fro = masses.piston + rod.wrist_pin
     gas, inertia = compute_gas_force(problem, degrees), to_and_fro * square * moved.bend
-    # The rod's swing, sin φ = (r/l) sin θ, is exact in both methods; its correction only applies to the exact one.
+    # The rod's angle, sin φ = (r/l) sin θ, is exact in both methods. The excess inertia only counts in the exact one.
     excess = rod.excess if problem.method == "exact" else 0.0
     lean = np.arcsin(crank / length * np.sin(theta))
     swing = crank / length * np.cos(theta) / np.cos(lean)
@@ -128,7 +128,7 @@ def compute_cylinder(problem: EngineProblem, degrees: Real, speed: float) -> Cyl
 def compute_engine(
     problem: EngineProblem, cylinders: Cylinders, fires: Real, speed: float, steps: int = STEPS_PER_TURN
 ) -> Engine:
-    """Sum over an engine whose cylinders fire at these crank angles (degrees); moments in spacings."""
+    """Sum torques and forces over an engine firing at angles ``fires``, degrees; moments are force times spacing."""
     count = round(steps * problem.cycle / 360.0)
     angle = problem.cycle * np.arange(count + 1) / count
     gas, inertia, two_mass = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
@@ -143,7 +143,7 @@ def compute_engine(
     # The rotating mass belongs to the throw: it counts once even if several cylinders share it.
     for throw in np.unique(cylinders.throw):
         k = int(np.argmax(cylinders.throw == throw))
-        # The crank leads the first top dead centre of its cylinder only by that cylinder's axis.
+        # At the firing of its first cylinder, the throw points along that cylinder's axis.
         force = turning * np.exp(1j * np.radians(angle - fires[k] + cylinders.axis[k]))
         shaking, moment = shaking + force, moment + (cylinders.place[k] - about) * force
     return Engine(angle, gas, inertia, shaking, moment, two_mass)

@@ -28,14 +28,14 @@ from synthesis.mechanisms import flywheel
 from synthesis.model.answer import Verification
 
 REPORTED_ORDERS = (1, 2, 3, 4, 6)
-"""Reported orders; the third only for the torque."""
+"""Reported orders of harmonics; the third order only for the torque."""
 
 CURVE_STRIDE = 4
-"""Stride of the listed positions: one degree."""
+"""Stride of the reported positions of curves: one degree."""
 
 
 ZERO_TOLERANCE = 1e-12
-"""Sums over cylinders below this, in units of one cylinder's, are rounding of zero."""
+"""Sum over cylinders, in units of one cylinder's value, below which it is attributed to rounding."""
 
 
 def _clear_rounding(value: float) -> float:
@@ -93,7 +93,7 @@ def _compute_metrics(
 
 
 def _lump_masses(problem: EngineProblem, masses: EngineMasses) -> LumpedMasses:
-    """Compute Norton's models: two masses at the pins, two with one at the wrist pin, one at the crank pin."""
+    """Compute Norton's models of the rod (two masses at the pins, or two with one at the wrist pin) and the throw."""
     scale, stated, throw = problem.scale, masses.rod, masses.crank
     crank, rod = scale * problem.crank, scale * problem.rod_length
     # Distance from the rod's centre of gravity to the wrist pin.
@@ -103,7 +103,7 @@ def _lump_masses(problem: EngineProblem, masses: EngineMasses) -> LumpedMasses:
     own = stated.mass * scale * stated.cg * to_wrist
     found: dict[str, float] = {"rod_crank_pin": two.crank_pin, "rod_wrist_pin": two.wrist_pin, "rod_inertia": own}
     if stated.inertia and to_wrist > 0.0 and stated.mass > 0.0:
-        # The centre of percussion for the wrist pin as pivot lies this far from the centre of gravity.
+        # Distance from the centre of gravity to the centre of percussion with the wrist pin as pivot.
         distance = stated.inertia / (stated.mass * to_wrist)
         found |= {
             "rod_inertia_error": 100.0 * (own / stated.inertia - 1.0),
@@ -208,7 +208,7 @@ def _size_flywheel(problem: EngineProblem, cylinders: Cylinders, fire: Real) -> 
 
 
 def _sum_existing_inertia(problem: EngineProblem, throws: int) -> float:
-    """Sum the shaft's inertia without a flywheel: the given one, and its throws."""
+    """Return the shaft's moment of inertia without a flywheel: the given one plus that of the throws."""
     throw = None if problem.masses is None else problem.masses.crank
     stated = 0.0 if problem.flywheel is None else problem.flywheel.existing_inertia
     return stated + (0.0 if throw is None or throw.inertia is None else throws * throw.inertia)

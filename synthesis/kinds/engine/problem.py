@@ -26,13 +26,13 @@ MAX_CYLINDERS = 16
 """Maximum number of cylinders: 2^15 choices of firing."""
 
 MIN_ROD_RATIO = 1.0 + 1e-3
-"""Rod over crank below which the rod is refused: at 1 it could not pass the dead centre."""
+"""Minimum ratio of rod length to crank radius: at 1 the rod could not pass the dead centre."""
 
 MAX_COMBINATIONS, MAX_CHOICES = 20_000, 20_000_000
 """Maximum number of combinations of given throw angles, and of their choices of firing in total."""
 
 MAX_ROD_RATIO = 1e6
-"""Rod over crank above which it is no engine: its motion is lost in the rounding of the rod."""
+"""Maximum ratio of rod length to crank radius, above which the motion is lost in the rounding of the rod length."""
 
 BANK_COUNTS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
 """Number of banks by type of layout; a radial engine has a star of cylinders instead."""
@@ -291,7 +291,7 @@ class EngineProblem(ProblemBase):
             found.append(Contradiction(f"{path}/throws", f"expected {count}, one for each throw"))
         if count is not None and layout.positions is not None and len(layout.positions) != count:
             found.append(Contradiction(f"{path}/positions", f"expected {count}, one for each throw"))
-        # Further layouts are compared with their best throws.
+        # Other layouts are compared with their best throws, so that they may not give any.
         if path != "/layout" and layout.throws is not None:
             found.append(Contradiction(f"{path}/throws", "throws of further layouts are found; omit them"))
         return found
@@ -301,7 +301,7 @@ class EngineProblem(ProblemBase):
         if self.speed_rpm is None and (self.masses is not None or self.pressure is not None):
             found.append(Contradiction("/speed_rpm", "forces of masses and gas need a speed"))
         if self.pressure is not None:
-            # Without a bore, pressure gives no force.
+            # A pressure without a bore gives no force.
             if self.bore is None:
                 found.append(Contradiction("/bore", "gas pressure acts on the bore; give `bore`"))
             fault = find_period_error(self.pressure.table, self.cycle)

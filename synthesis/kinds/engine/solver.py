@@ -1,4 +1,4 @@
-"""Piston engines: the given arrangement, or all that fire evenly, ranked by their shaking of the frame."""
+"""Piston engines: the given arrangement, or all that fire evenly, ranked by the shaking of the frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SCORE_DIGITS = 9
 """Decimals to which the ranking criteria of engines are compared."""
 
 ANALYSED_FACTOR = 3
-"""Number of analysed arrangements per requested design, if a firing order is required."""
+"""Number of analysed arrangements per requested design if a firing order is required, which many do not allow."""
 
 
 class _Candidate(NamedTuple):
@@ -40,7 +40,7 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
     Returns
     -------
     EngineResult
-        Complete if the throws are given, or all arrangements were listed: those of up to eight throws.
+        Complete if the throws are given, or if all arrangements were listed, as for up to eight throws.
     """
     sifting = CandidateLog[EngineDesign](problem)
     given = problem.layout.throws
@@ -105,11 +105,11 @@ def _score_arrangements(
         second.major,
         second_moment.major,
         torque,
-        # Tie-breakers: the smaller the weights on the crankshaft, the better.
+        # Ties are broken in favour of smaller weights on the crankshaft.
         np.abs(force.forward),
         np.abs(moment.forward),
     ]
-    # Rounded, so that arrangements equal except for rounding stay in the order of their phases.
+    # Round the scores, so that arrangements that are equal except for rounding stay in the order of their phases.
     scores = np.round(np.stack(columns, axis=1), SCORE_DIGITS) + 0.0
     return [_Candidate(tuple(row), place, throws) for row, throws in zip(scores.tolist(), phases, strict=True)]
 

@@ -1,8 +1,8 @@
 """Verification of engines: the slider-crank of each cylinder is driven, and the forces on the frame are measured on it.
 
-No result of the solver is used: pistons and cranks are those of a closed mechanism, accelerations are the drive's,
-harmonics are read from a Fourier transform of their sum, torques and pin forces are the reactions of
-:mod:`kinematics.dynamics`, and a balancing weight's force is the second derivative of its position.
+No result of the solver is used. Pistons and cranks belong to a closed mechanism, which is driven to get their
+accelerations. Harmonics are read from a Fourier transform of the summed accelerations. Torques and pin forces are the
+reactions of :mod:`kinematics.dynamics`, and a balancing weight's force is the second derivative of its position.
 """
 
 from __future__ import annotations
@@ -30,19 +30,20 @@ from synthesis.verification.checks import check_error, check_maximum
 from synthesis.verification.shaft_speed import integrate_speed
 
 SAMPLE_COUNT = 4096
-"""Number of positions of a turn: far more than a piston has harmonics, except for rods hardly longer than the crank."""
+"""Number of positions per turn: far more than the harmonics of a piston, unless the rod is hardly longer than the
+crank."""
 
 ROUTE_TOLERANCE = 1e-9
-"""Difference of two routes, as a share of one cylinder's magnitudes, that is attributed to rounding."""
+"""Difference of two methods, as a share of one cylinder's magnitudes, that is attributed to rounding."""
 
 EVENNESS_TOLERANCE = 1e-6
 """Unevenness in degrees that is attributed to rounding."""
 
 DEAD_CENTRE_TOLERANCE = 1e-6
-"""Degrees by which a firing may miss the numerically located top dead centre."""
+"""Permitted distance of a firing from the numerically located top dead centre, degrees."""
 
 COEFFICIENT_TOLERANCE = 1e-6
-"""Share by which the integrated coefficient of fluctuation may exceed the requested one."""
+"""Permitted relative excess of the integrated coefficient of fluctuation over the requested one."""
 
 
 class _ShakingSpectra(NamedTuple):
@@ -61,10 +62,10 @@ def verify_engine(problem: EngineProblem, design: EngineDesign) -> Verification:
     problem : EngineProblem
         The request.
     design : EngineDesign
-        Its mechanism gives the engine; all other parts are claims.
+        Its mechanism defines the engine. All other parts are claims to be verified.
     """
     shaken = _compute_spectra(design)
-    # The books' two terms are off by the omitted terms: of the order of λ³ in the second harmonic.
+    # The textbooks' two-term formula deviates by the omitted terms, of the order of λ³ in the second harmonic.
     off = ROUTE_TOLERANCE if problem.method == "exact" else (problem.crank / problem.rod_length) ** 2
     checks = [
         check_error("harmonics", _compare_harmonics(problem, design, shaken), ROUTE_TOLERANCE),
@@ -96,7 +97,7 @@ def _turn() -> Real:
 
 
 def _compute_spectra(design: EngineDesign) -> _ShakingSpectra:
-    """Compute the force of the pistons on the frame at unit mass and speed, over r: minus their accelerations."""
+    """Compute the spectra of the pistons' force on the frame, minus their accelerations, for unit mass, speed and r."""
     turn, crank = _turn(), design.mechanism.crank
     force, moment = np.zeros(SAMPLE_COUNT, np.complex128), np.zeros(SAMPLE_COUNT, np.complex128)
     for cylinder in design.mechanism.cylinders:
@@ -128,7 +129,7 @@ def _compare_harmonics(problem: EngineProblem, design: EngineDesign, shaken: _Sh
         # The third order is only reported for the torque.
         if k == 3:
             continue
-        # One cylinder's harmonic is planar: its two rotating parts are half of it each.
+        # The harmonic of one cylinder is planar, so that each of its two rotating parts is half of it.
         whole = 2.0 * abs(shaken.one[k])
         moment = shaken.moment - about * shaken.force
         for spectrum, told, size in ((shaken.force, harmonic.force, 1.0), (moment, harmonic.moment, reach)):
@@ -161,7 +162,7 @@ def _measure_firing_error(design: EngineDesign) -> float:
             place, slope, bend = (
                 _drive_cylinder(design, cylinder, np.array([start + math.radians(angle)]))[:, 0] * away
             ).real
-            # One Newton step gives the distance to the dead centre; at the inner one the curvature is positive.
+            # One Newton step gives the distance to the dead centre. At the inner one the curvature is positive.
             missed = math.degrees(abs(slope / bend)) if bend < 0.0 and place > 0.0 else 180.0
             worst = max(worst, missed)
     return worst
@@ -175,7 +176,7 @@ def _measure_unevenness(problem: EngineProblem, design: EngineDesign) -> float:
 
 
 def _has_order(problem: EngineProblem, design: EngineDesign) -> bool:
-    """Return whether the cylinders can fire in the given order, each at a top dead centre, at given angles if any."""
+    """Return whether the cylinders can fire in the requested order, each at a top dead centre and any given angle."""
     order, cylinders = problem.firing_order or [], design.mechanism.cylinders
     tops = [math.fmod(cylinders[k - 1].phase + cylinders[k - 1].axis, 360.0) for k in order]
     tops = [(top - tops[0]) % 360.0 for top in tops]
@@ -186,7 +187,7 @@ def _has_order(problem: EngineProblem, design: EngineDesign) -> bool:
         return max(map(abs, missed)) <= EVENNESS_TOLERANCE and turned == sorted(turned)
     at = 0.0
     for top in tops[1:]:
-        # The next top dead centre of this cylinder; two may fire at the same time.
+        # Advance to the next top dead centre of this cylinder; two cylinders may fire at the same time.
         at += (
             (top - at - EVENNESS_TOLERANCE) % 360.0 + EVENNESS_TOLERANCE
             if (top - at) % 360.0 > EVENNESS_TOLERANCE
@@ -314,7 +315,7 @@ def _check_flywheel(problem: EngineProblem, design: EngineDesign, wheel: EngineF
     throw = None if problem.masses is None else problem.masses.crank
     if throw is not None and throw.inertia is not None:
         inertia += throw.inertia * len(design.mechanism.throws)
-    # Corners of the gas pressure lie between the positions: both routes use a cubic through these.
+    # Corners of the gas pressure lie between the positions, so that both methods use a cubic through the positions.
     spline = CubicSpline(np.radians(degrees), np.append(-torque[:-1], -torque[0]), bc_type="periodic")
     fine = np.radians(problem.cycle * np.arange(2 * count + 1) / (2 * count))
     run = (

@@ -1,4 +1,4 @@
-"""The torque of a shaft over one cycle: by a table, or by the forces of a linkage at constant speed."""
+"""The torque of a shaft over one cycle, from a table or from the forces in a linkage at constant speed."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from synthesis.mechanisms.courses import find_period_turns
 from synthesis.model.dynamics.loads import FULL_TURN
 
 MAX_STEPS_PER_TURN = 3600
-"""Maximum number of positions of a turn at which a linkage's torque is computed. At the onset of a load, a cubic
-through them errs by the square of a step: some 1e-7 of a coefficient."""
+"""Maximum number of positions per turn at which a linkage's torque is computed. At the onset of a load, a cubic through
+them has an error of the order of the step squared, about 1e-7 of a coefficient."""
 
 
 class UnknownTorque(ValueError):
@@ -31,9 +31,9 @@ class TorqueCycle(NamedTuple):
     Attributes
     ----------
     angle : float, shape (N + 1,)
-        Radians, upwards over one cycle.
+        Angles in radians, increasing over one cycle.
     demand : float, shape (N + 1,)
-        Torque taken from the shaft; negative if the shaft is driven. The last equals the first.
+        Torque taken from the shaft; negative if the shaft is driven. The last value equals the first.
     smooth : bool
         True for a periodic cubic between these points, false for straight lines.
     """
@@ -49,14 +49,14 @@ def compute_torque_cycle(problem: FlywheelProblem) -> TorqueCycle:
     Raises
     ------
     UnknownTorque
-        If a linkage's torque is not known at all positions, or does not repeat.
+        If a linkage's torque is unknown at some positions, or does not repeat.
     """
     if problem.torque is None:
         return compute_machine_torque(problem, "drive", 0.0)
     rows = np.array(problem.torque.table, np.float64)
     angle, torque = np.radians(rows[:, 0]), rows[:, 1]
     cycle = 2.0 * math.pi * problem.torque.turns
-    # A table that stops before a full cycle is closed by its first row; one that covers it has that row twice.
+    # A table that ends before a full cycle is closed with its first row; otherwise its last row repeats the first.
     if rows[-1, 0] - rows[0, 0] < FULL_TURN * problem.torque.turns:
         angle, torque = np.append(angle, angle[0] + cycle), np.append(torque, torque[0])
     else:
@@ -66,24 +66,24 @@ def compute_torque_cycle(problem: FlywheelProblem) -> TorqueCycle:
 
 
 def compute_machine_torque(problem: FlywheelProblem, route: str, share: float) -> TorqueCycle:
-    """Compute a linkage's torque by one of the two ``route`` s to its forces, shifted by a ``share`` of a step.
+    """Compute a linkage's torque by the method ``route``, with the positions shifted by a ``share`` of a step.
 
     Raises
     ------
     UnknownTorque
-        If it is not known at all positions, or does not repeat.
+        If the torque is unknown at some positions, or does not repeat.
     """
     assert problem.machine is not None
     request = build_loaded_request(problem.machine.mechanism, problem.machine.dynamics, problem.length_unit)
     assert request.dynamics is not None
     mechanism = request.mechanism.build_mechanism()
     turns = find_period_turns(request.dynamics, mechanism)
-    # At least 36 positions per turn must remain of the maximum number.
+    # At least 36 positions per turn must fit into the maximum number.
     if not 0 < turns < MAX_POSITIONS // 36:
         raise UnknownTorque("the linkage and its loads do not repeat within a few turns")
     steps = turns * min(MAX_STEPS_PER_TURN, (MAX_POSITIONS - 1) // turns)
     at = FULL_TURN * turns * (np.arange(steps + 1) + share) / steps
-    # The linkage is driven at constant speed: the fluctuation is small.
+    # Drive the linkage at constant speed, since the fluctuation is small.
     speed = np.full(len(at), problem.speed_rpm * RAD_PER_S)
     found = analyze_forces(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
     for status, angle in zip(found["status"], at, strict=True):

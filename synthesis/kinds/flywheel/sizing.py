@@ -1,15 +1,14 @@
 """The lightest disc or rim of a given moment of inertia within its limits.
 
 A ring of density ρ, thickness t, radii R and r has I = π ρ t (R⁴ − r⁴)/2 and m = π ρ t (R² − r²) = 2 I/(R² + r²): for
-given inertia it is the lighter the larger its radii. With c = 2 I/(π ρ) its thickness is c/(R⁴ − r⁴), so that limits
-are
+given inertia, larger radii make it lighter. With c = 2 I/(π ρ) its thickness is c/(R⁴ − r⁴), so that the limits are
 
 * t ≥ t₁ or t ≥ R/q:  R⁴ − r⁴ ≤ c/t;
 * t ≤ t₂:  r ≤ (R⁴ − c/t₂)^¼;  for a wall w:  r ≤ R − w.
 
-Both bounds of r rise with R, and so does the mass's denominator; with r at the lower of the two, R⁴ − r⁴ rises with R
-too. So R is the largest that its own limits and the minimum thickness permit, r the largest for this R, and no wheel
-within the limits is lighter. A disc has r = 0.
+Both bounds of r rise with R, and so does the denominator R² + r² of the mass. With r at the lower of both bounds,
+R⁴ − r⁴ rises with R, too. The lightest wheel therefore has the largest R that its own limits and the minimum thickness
+permit, and the largest r for this R. A disc has r = 0.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 BISECTION_COUNT = 200
-"""Number of bisections of a range of radii: until its ends are neighbouring floating-point numbers."""
+"""Number of bisections of a range of radii, after which its ends are neighbouring floating-point numbers."""
 
 
 class Bounds(NamedTuple):
@@ -51,13 +50,13 @@ def find_lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) 
     inertia, density : float
         Positive.
     bounds : Bounds
-        At least one of them bounds the radius (for a rim, the minimum thickness only together with a wall), and one the
-        inner radius of a rim.
+        At least one limit must bound the radius. For a rim, the minimum thickness only does so together with a wall,
+        and another limit must bound the inner radius.
     """
     c = 2.0 * inertia / (math.pi * density)
 
     def find_inner_radius(radius: float) -> float:
-        """Return the greatest inner radius; negative if the wheel would be too thick."""
+        """Return the maximum inner radius; negative if the wheel would be too thick."""
         if not rim:
             # The slack keeps a disc exactly at the thickness limit feasible.
             return 0.0 if bounds.thickest is None or radius**4 * bounds.thickest >= c * (1.0 - 1e-12) else -1.0
@@ -70,7 +69,7 @@ def find_lightest(inertia: float, density: float, bounds: Bounds, *, rim: bool) 
 
     def is_too_thin(radius: float) -> bool:
         open_ = find_inner_radius(radius)
-        # The minimum thickness, directly or by the ratio to the radius.
+        # The minimum thickness follows from its own limit or from the ratio of radius to thickness.
         least = max(bounds.thinnest or 0.0, radius / bounds.flattest if bounds.flattest is not None else 0.0)
         return open_ >= 0.0 and (radius**4 - open_**4) * least > c
 

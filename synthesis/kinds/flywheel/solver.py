@@ -23,8 +23,8 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
     Returns
     -------
     FlywheelResult
-        Complete whenever the torque is known: each form has one lightest wheel. Without designs if none is needed, or
-        the limits permit none; ``summary`` gives the reason.
+        Complete whenever the torque is known, since each form has one lightest wheel. There are no designs if no
+        flywheel is needed or the limits permit none; ``summary`` gives the reason.
     """
     sifting = CandidateLog[FlywheelDesign](problem)
     progress(0.0, "torque over a cycle")
@@ -60,7 +60,7 @@ def _compute_fluctuation(problem: FlywheelProblem, course: TorqueCycle, found: f
     speed, present = problem.speed_rpm * RAD_PER_S, problem.existing_inertia
     whole = flywheel.compute_first_order_inertia(found.energy, speed, problem.coefficient)
     exact = flywheel.find_exact_inertia(found, speed, problem.coefficient)
-    # Reported torques keep the sign of the given side.
+    # Report torques with the sign of the requested side, demand or supply.
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
     listed = flywheel.list_pulses(found, float(course.angle[-1] - course.angle[0]))
     return Fluctuation.model_validate(
@@ -83,7 +83,7 @@ def _size_wheel(
     ends = flywheel.find_extreme_speeds(found, inertia + problem.existing_inertia, problem.speed_rpm * RAD_PER_S)
     assert ends is not None, "the inertia was found by this speed"
     radii = [] if limits.radius is None else [scale * limits.radius.max]
-    # The rim speed limit applies at the greatest speed of the cycle.
+    # The rim speed limit applies at the maximum speed of the cycle.
     radii += [] if limits.rim_speed is None else [limits.rim_speed.max / ends[1]]
     thickness = limits.thickness
     bounds = Bounds(

@@ -1,8 +1,8 @@
 """Verification of flywheels: the speed of the shaft is integrated over two cycles with the finished wheel.
 
-I ω dω/dθ = T̄ − T(θ) is integrated by the Runge-Kutta method on a grid that includes all rows of the table, together
-with the time; the initial speed is chosen so that the mean over time is the requested one. Mass and inertia are
-sums over thin rings, and no wheel of a grid over everything that the limits permit is lighter.
+The equation I ω dω/dθ = T̄ − T(θ) and the time are integrated by the Runge-Kutta method on a grid that includes all
+rows of the table. The initial speed is chosen so that the mean over time is the requested one. Mass and inertia are
+sums over thin rings. The wheel is also compared with a grid of all wheels that the limits permit: none may be lighter.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ STEPS_PER_TURN = 2048
 """Equal steps of a turn, in addition to the rows of a table."""
 
 COEFFICIENT_TOLERANCE = 1e-6
-"""Share by which the integrated coefficient may exceed the requested one."""
+"""Permitted relative excess of the integrated coefficient of fluctuation over the requested one."""
 
 REPEAT_TOLERANCE = 1e-7
-"""Share of the speed by which it may differ after a cycle: the method's error at corners of the torque."""
+"""Permitted relative difference of the speed after a cycle, due to the method's error at corners of the torque."""
 
 RING_COUNT = 64
-"""Number of rings in the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
+"""Number of rings in the sums, each with three Gauss points, which are exact for cubic integrands."""
 
 SAMPLE_COUNT = 400
-"""Number of radii, inner and outer, of the wheels that are compared."""
+"""Number of inner and of outer radii of the wheels with which the answer is compared."""
 
 MASS_TOLERANCE = 1e-6
-"""Share by which a compared wheel may be lighter: twice the share of the coefficient."""
+"""Share by which a compared wheel may be lighter, in proportion to the tolerance of the coefficient."""
 
 ACTIVE_TOLERANCE = 1e-9
 """Share of a limit within which the limit counts as active."""
@@ -120,7 +120,7 @@ def _sample_torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
         own, smooth = np.radians(rows[:, 0]), problem.torque.interpolation == "periodic_cubic"
         values = rows[:, 1] if problem.torque.side == "demand" else -rows[:, 1]
     else:
-        # The other half of the positions, by the energy balance instead of the reactions.
+        # Use positions halfway between the solver's, and the energy balance instead of the reactions.
         course = compute_machine_torque(problem, "virtual_work_drive", 0.5)
         own, values, smooth = course.angle, course.demand, True
         start, period = float(own[0]), float(own[-1] - own[0])

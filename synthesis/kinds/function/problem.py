@@ -354,7 +354,7 @@ class FunctionProblem(LinkageProblem):
         elif self.scales is not None:
             free = [self.scales.input, self.scales.output].count(None)
         else:
-            # A slider's output scale only changes the size of the linkage, so it is no degree of freedom.
+            # A slider's output scale only changes the size of the linkage, so it is not a degree of freedom.
             free = 1 if self.slides else 2
         return BASE_PAIR_COUNT + zeros + free
 

@@ -102,7 +102,7 @@ def _rank_trains(problem: GearTrainProblem, task: Task, wanted: int, progress: P
         return outcome
     progress(0.0, "searching trains with hunting teeth")
     hunting = search(build_task(problem, coprime=True), problem.exact_tolerance, wanted, progress)
-    # Two pairings of the same gears are represented by the one with hunting teeth.
+    # Of two pairings of the same gears, the one with hunting teeth represents both.
     met = {_describe_gears(task, train) for train in hunting.trains}
     trains = [train for train in outcome.trains if _describe_gears(task, train) not in met]
     return outcome._replace(trains=order_trains(task, [*trains, *hunting.trains], set(hunting.trains))[:wanted])

@@ -1,7 +1,8 @@
 """Verification of a gear train: speeds followed from mesh to mesh, meshes constructed from the tooth numbers.
 
-Nothing from the search is used. The ratio comes from the speeds of the shafts, exact fractions; its error from the
-target's enclosure between rational numbers; distances, contact and interference from the geometry of the teeth.
+Nothing from the search is used. The ratio is computed from the speeds of the shafts in exact fractions, and its error
+from the target's enclosure between rational numbers. Distances, contact and interference follow from the geometry of
+the teeth.
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ from synthesis.model.gears.strength import LoadedPair, PairStrength, build_stage
 from synthesis.verification.checks import check_error
 
 DISTANCE_TOLERANCE = 1e-12
-"""Share of a centre distance by which equal ones may differ by rounding."""
+"""Relative difference of equal centre distances that is attributed to rounding."""
 
 FIT_TOLERANCE = 1e-9
-"""Share of a module, or of a contact ratio, by which a fitted mesh may miss a constraint by rounding."""
+"""Violation of a constraint by a fitted mesh, as a share of a module or of a contact ratio, attributed to rounding."""
 
 PARALLEL_TOLERANCE = 1e-12
-"""Deviation from 1 by rounding of the cosine of the angle between parallel axes."""
+"""Deviation from 1 of the cosine of the angle between parallel axes that is attributed to rounding."""
 
 AXIS_DIGITS = 15
 """Decimals to which axes are reported, so that right angles are exact."""
 
 ENCLOSURE_BITS = 256
-"""Width of the target's enclosure in bits; errors of trains are accurate to some sixty digits."""
+"""Precision of the target's enclosure in bits, with which errors of trains are accurate to about sixty digits."""
 
 
 def build_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:

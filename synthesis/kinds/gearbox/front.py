@@ -1,13 +1,13 @@
-"""Minimum error of a gearbox for every tooth sum: stages combined, with an admitted error that grows run by run.
+"""Minimum error of a gearbox for every tooth sum, by combining stages in runs with a growing error bound.
 
-A choice of teeth for a stage enters by three numbers, its middle c, half width h and tooth sum
-(:mod:`synthesis.kinds.gearbox.stages`). All stages but one or two are combined; the best partner of each combination
+Only three numbers of a choice of teeth for a stage matter: its middle c, half width h and tooth sum
+(:mod:`synthesis.kinds.gearbox.stages`). All stages but one or two are combined. The best partner of each combination
 among the remaining stages is found by bisection.
 
 Most combinations have an error far above the minimum, because gearboxes with large tooth sums come much closer than the
-tolerance requires. The first run therefore admits only a small share of the tolerated error. The errors that it finds
-are upper bounds, one for each tooth sum, for the next run with a larger share, until a run admits the whole tolerance.
-Each run is exact within its bounds, and the last admits everything that could be better.
+tolerance requires. The first run therefore admits only a small share of the tolerated error. The errors that it finds,
+one for each tooth sum, are upper bounds for the next run, which admits a larger share. The last run admits the whole
+tolerance. Each run is exact within its bounds, and the last one admits everything that could be better.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from kinematics.arrays import Integers, Real
 from synthesis.kinds.gearbox.stages import EQUALITY_TOLERANCE, Options, select_undominated
 
 TOLERANCE_DIVISORS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
-"""Divisors of the tolerated error, run by run."""
+"""Divisors of the tolerated error, one for each run."""
 
 MAX_COMBINED_STAGES = 4
 """Maximum number of stages of which all but one are combined; with more, all but two."""
@@ -188,8 +188,8 @@ def _add_pairs(one: Options, other: Options, pairs: Integers) -> tuple[Real, Rea
 def _match_halves(one: Options, other: Options, wanted: _SearchBounds) -> list[Choice]:
     """Find the best choice of every total tooth sum.
 
-    For each choice of the first stages the best partner of one tooth sum has its middle next to the required one: the
-    one of least h − c below it, or the one of least h + c above it.
+    For each choice of the first stages, the best partner of one tooth sum is one of two choices: the one with the
+    minimum h − c among those with a middle below the required one, or that with the minimum h + c above it.
     """
     best: dict[int, tuple[float, int, int]] = {}
     for size in np.unique(other.size).tolist():
@@ -232,13 +232,13 @@ def _match_halves(one: Options, other: Options, wanted: _SearchBounds) -> list[C
 
 
 def _find_running_minimum(values: Real) -> Integers:
-    """Return for every place the place of the least value up to it."""
+    """Return, for every index, the index of the minimum of the values up to it."""
     least = np.minimum.accumulate(values)
     return np.asarray(np.maximum.accumulate(np.where(values <= least, np.arange(len(values)), 0)), np.int64)
 
 
 def _find_first_of_total(total: Integers, error: Real) -> Integers:
-    """Return the place of least error for each total."""
+    """Return the index of the minimum error for each total."""
     order = np.lexsort((error, total))
     _, first = np.unique(total[order], return_index=True)
     return order[first]

@@ -13,7 +13,7 @@ from synthesis.model.gears.request import MAX_TOOTH_SUM, CommonPressureAngle, Mo
 from synthesis.model.problem import Contradiction, Count, Flag, PositiveNumber, ProblemBase, Sizable, Statement
 
 STRUCTURE_MARGIN = 1e-9
-"""Share by which a deviation stays below a quarter of a step, up to which every gearbox has a structure."""
+"""Share by which a deviation stays below a quarter of a step: below that limit every gearbox has a structure."""
 
 MAX_SPEED_RANGE = 1e6
 """Highest over lowest speed above which a progression is assumed to be a typing error."""

@@ -2,18 +2,17 @@
 
 With equal modules all pairs of a stage have the same tooth sum. Let d = ln(driver/driven) − k x ln φ for pair k of a
 stage: with exact steps d would be the same for all its pairs. The logarithm of a spindle speed over its nominal
-value is the sum of the engaged pairs' d, less L = ln(n₁/n_input). Over all speeds these sums range from the sum of the
-least d of each stage to the sum of the greatest, so that with the middle c and half width h of each stage::
+value is the sum of the engaged pairs' d, minus L = ln(n₁/n_input). Over all speeds these sums range from the sum of the
+stages' minimum d to the sum of their maximum d, so that with the middle c and half width h of each stage::
 
     largest |ln(n/n_nominal)| = |Σ c − L| + Σ h
 
-A choice of teeth thus enters by c, h and its tooth sum alone. It is dominated by a choice c', h' of the same or a
-smaller tooth sum if |c − c'| + h' ≤ h, for any other stages. Removing dominated choices never loses the best
-gearbox.
+Only c, h and the tooth sum of a choice of teeth matter. Whatever the other stages are, it is dominated by a choice c',
+h' of the same or a smaller tooth sum if |c − c'| + h' ≤ h. Removing dominated choices never loses the best gearbox.
 
-For a given tooth sum of one stage only few choices are needed. Let δ be the least d of a choice. Taking for each
-pair the smallest d that is not below δ gives an interval from least to greatest d that lies within that of the choice,
-and so dominates it. It suffices to let δ run through the d of all drivers and pairs.
+For a given tooth sum of one stage, only few choices are needed. Let δ be the minimum d of a choice. Taking for each
+pair the smallest d that is not below δ gives a choice with an interval of d within that of the original choice, which
+it therefore dominates. It suffices to let δ run through the d of all drivers and pairs.
 """
 
 from __future__ import annotations
@@ -119,12 +118,13 @@ def find_sound_drivers(total: int, limits: StageLimits) -> Integers:
 
 
 def _find_narrowest(own: Integers, level: Real, step: float, pairs: int, cluster: int) -> tuple[Real, Real, Integers]:
-    """Find for every d of a driver as the least the narrowest choice: its least and greatest d (n,), drivers (n, p).
+    """Find the narrowest choice for every possible minimum d.
 
-    With a minimum difference between the two largest drivers, the largest is moved up if necessary: it and the one
-    below it are still the smallest possible.
+    Return the minimum and the maximum d of each choice, shape (n,), and its drivers, shape (n, pairs). If a minimum
+    difference between the two largest drivers is required, the largest is moved up if necessary. It and the next
+    driver are then still the smallest possible.
     """
-    # Every d of a driver in the place of any pair is tried as the least one.
+    # Every d of a driver in the place of any pair is tried as the minimum.
     least = np.concatenate([level - k * step for k in range(pairs)])
     places = [np.searchsorted(level, least + (k * step - EQUALITY_TOLERANCE)) for k in range(pairs)]
     if pairs > 2 and cluster:

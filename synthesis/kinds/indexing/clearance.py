@@ -1,4 +1,4 @@
-"""Distances of a finished drive, measured on its outlines over an index and a rest."""
+"""Clearances of a finished drive, measured on its outlines over an index and a rest."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.kinds.indexing.polygons import measure_depth, measure_distance, m
 from synthesis.kinds.indexing.spherical_drive import measure_on_sphere
 
 MOVING_POSITIONS, RESTING_POSITIONS = 173, 61
-"""Number of positions of an index, different from those of which the disc was made, and of a rest."""
+"""Numbers of positions of an index, different from those used to construct the disc, and of a rest."""
 
 PASSING_POSITIONS = 721
 """Number of positions of a rest at which the distance of the rollers from the wheel is measured."""
@@ -35,16 +35,16 @@ class MeasuredDrive:
     Attributes
     ----------
     roller : float
-        Least distance of the roller's center from the wheel over an index.
+        Minimum distance of the roller's center from the wheel over an index.
     passing : float
-        The same for all rollers outside slots: over a rest, and over the index of another one. On a sphere the diameter
-        of the roller if it comes no nearer.
+        The same distance for rollers outside slots, over a rest and over the index of another roller. On a sphere, at
+        most the diameter of the roller.
     overlap : float
-        Greatest depth of the wheel in the disc over an index and a rest; 0 if they stay separate.
+        Maximum depth of the wheel in the disc over an index and a rest; 0 if they stay separate.
     locked : float
         Share of the rest over which the wheel cannot turn in either direction.
     locked_angle : float
-        The same in degrees of the crank.
+        The locked part of the rest in degrees of the crank.
     play : float
         Degrees by which the wheel can be turned in the middle of a rest.
     wall, web : float
@@ -54,7 +54,7 @@ class MeasuredDrive:
     outmost : float
         Distance from the wheel's axis to the farthest point of its outline; for a ring, of its slots.
     neck : float
-        Least radius of the disc about the crank's axis.
+        Minimum radius of the disc about the crank's axis.
     size : float
         Extent of the wheel and the crank along the line of both axes, or diameter.
     """
@@ -89,7 +89,7 @@ def measure_drive(design: IndexingDesign, half: float) -> MeasuredDrive:
     turn = np.angle(roller)
 
     def find_deepest(crank: Real, wheel: Real) -> Real:
-        """Return the greatest depth in each position: crank angles from mid-index, directions of slot 0."""
+        """Return the maximum depth in each position: crank angles from mid-index, directions of slot 0."""
         seen = (points * np.exp(1j * wheel)[:, None] - c) * (-sense * np.exp(-1j * crank))[:, None]
         return np.asarray(measure_depth(mechanism.disc, seen).max(axis=1))
 
@@ -118,11 +118,11 @@ def measure_drive(design: IndexingDesign, half: float) -> MeasuredDrive:
 
 
 def _measure_passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Real) -> float:
-    """Return the least distance of rollers outside slots; ``alpha`` and ``turn`` are those of the first's index."""
+    """Return the minimum distance of rollers outside slots; ``alpha``, ``turn`` belong to the first roller's index."""
     c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
     half, pitch = float(alpha[-1]), 2.0 * math.pi / mechanism.rollers
     rest = np.linspace(half, pitch - half, PASSING_POSITIONS)
-    # All crank angles at which the first roller is in no slot: the rest, and the indexes of the other rollers.
+    # The first roller is in no slot during the rest and during the indexes of the other rollers.
     crank = np.concatenate([rest, *(alpha + pitch * k for k in range(1, mechanism.rollers))])
     others = pitch * np.arange(mechanism.rollers)[:, None]
     wheel = np.concatenate([np.full(PASSING_POSITIONS, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
@@ -132,7 +132,7 @@ def _measure_passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, 
     # A roller farther from the wheel's circle than its own diameter cannot be near the wheel.
     apart = sense * (np.abs(places) - mechanism.wheel_radius)
     sampled = measure_distance(outline, places[apart < mechanism.roller_diameter])
-    # Corners that the path passes between two sampled positions: the path is a circle about the crank's axis.
+    # Include corners that the path, a circle about the crank's axis, passes between two sampled positions.
     seen = (outline * np.exp(1j * turn[-1]) - c) * -sense
     passed = np.mod(np.angle(seen) - half, pitch) <= pitch - 2.0 * half
     return min(sampled, float(np.abs(np.abs(seen[passed]) - mechanism.crank_radius).min(initial=math.inf)))

@@ -1,7 +1,7 @@
-"""The drag link with which a Geneva drive has the minimum peak acceleration at a constant input speed.
+"""Search for the drag link that minimizes the peak acceleration of a Geneva drive at a constant input speed.
 
-Lengths over the ground and the output's angle at mid-index are sampled at random, infeasible ones are
-dropped, and the best few are refined by the Nelder-Mead method, which suffices for these four numbers.
+The ratios of the lengths to the ground and the output's angle at mid-index are sampled at random. Infeasible samples
+are dropped, and the best few are refined by the Nelder-Mead method, which suffices for these four variables.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ POSITIONS_PER_INDEX = 241
 """Number of positions of an index at which the refinement evaluates one."""
 
 MAX_LINK_RATIO = 5.0
-"""Longest link over the ground."""
+"""Maximum ratio of the longest link to the ground."""
 
 PENALTY, MAX_COST = 1e4, 1e2
 """Cost per unit of a violated constraint; and the cost below which a link is accepted, to be verified later."""
 
 DWELL_TOLERANCE = 0.02
-"""Permitted error of a dwell share in few positions, as a share of a turn."""
+"""Permitted violation of the limits on a dwell share estimated from few positions, as a share of a turn."""
 
 LIMIT_MARGIN = 1e-6
-"""Share by which the search stays away from its limits."""
+"""Margin that the search keeps from its limits."""
 
 
 def find_best_course(problem: IndexingProblem, geneva: Geneva) -> CrankCourse | None:
-    """Find the best course of a drag link before a drive; None if no tried one keeps the constraints."""
+    """Find the best motion of a drag link in front of a drive; None if no tried link keeps the constraints."""
     rng = np.random.default_rng(problem.seed)
     lengths = rng.uniform(1.05, MAX_LINK_RATIO, (SAMPLE_COUNT, 3))
     phases = rng.uniform(0.0, 2.0 * math.pi, SAMPLE_COUNT)
@@ -50,7 +50,7 @@ def find_best_course(problem: IndexingProblem, geneva: Geneva) -> CrankCourse | 
     if not len(lengths):
         return None
     peaks, rests = _estimate_peaks(geneva, lengths, phases)
-    # Links outside the dwell limits are ranked last instead of dropped: the refinement may still bring them in.
+    # Links outside the dwell limits are ranked last, not dropped, because the refinement may still make them feasible.
     peaks = peaks + np.abs(peaks).max() * (_compute_dwell_violation(problem, rests) > DWELL_TOLERANCE)
     found: tuple[float, CrankCourse] | None = None
     for number in np.argsort(peaks)[:DESCENT_COUNT]:
@@ -99,7 +99,7 @@ def _compute_cost(problem: IndexingProblem, geneva: Geneva, x: Real, wanted: flo
     """Return the peak acceleration, or a penalty for violated constraints."""
     lengths = x[:3]
     # Penalties are ordered: impossible links cost most, then poor transmission, then dwell and steadiness.
-    # Distance outside the box of permitted link lengths.
+    # ``over`` is the distance outside the box of permitted link lengths.
     over = max(0.0, float(lengths.max()) - MAX_LINK_RATIO) + max(0.0, 1.0 + LIMIT_MARGIN - float(lengths.min()))
     if over > 0.0 or not _has_full_rotation(lengths):
         return PENALTY * (2.0 + over)

@@ -1,8 +1,8 @@
-"""Torque and pin force of an index at steady speed of the crank.
+"""Torque and pin force during an index at constant speed of the crank.
 
-The wheel takes T = J ω² φ'' + T_L; without friction the crank gives M = T φ', and the roller presses on the side of its
-slot with F = T/ρ, normal to the slot, at its distance ρ from the wheel's axis (Norton, *Design of Machinery*, ch. 11).
-If F is negative the other side of the slot decelerates the wheel.
+The wheel requires the torque T = J ω² φ'' + T_L. Without friction, the drive torque is M = T φ', and the roller presses
+on the side of its slot with F = T/ρ, normal to the slot, at the distance ρ from the wheel's axis (Norton, *Design of
+Machinery*, ch. 11). If F is negative, the other side of the slot decelerates the wheel.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Load:
 
 
 def compute_arm(drive: Geneva, angle: Real, size: float) -> Real:
-    """Return the distance of the roller from the wheel's axis; ``size``: center distance or sphere radius."""
+    """Return the distance of the roller from the wheel's axis; ``size`` is the center distance or the sphere radius."""
     if drive.drive == "geneva_spherical":
         sine, cosine = math.sin(math.atan(drive.ratio)), math.cos(math.atan(drive.ratio))
         return np.asarray(size * np.hypot(cosine, sine * np.sin(angle)))
@@ -53,7 +53,7 @@ def compute_pin_force(course: CrankCourse, load: Load, angle: Real, size: float)
 
 @dataclass(frozen=True)
 class Peaks:
-    """Greatest magnitudes over an index."""
+    """Maximum magnitudes over an index."""
 
     velocity: float
     acceleration: float

@@ -1,4 +1,4 @@
-"""Geneva drives in the plane: their dimensions from a center distance, and the constraints on its minimum."""
+"""Plane Geneva drives: dimensions for a given center distance, and the constraints that determine its minimum."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from synthesis.kinds.indexing.design import DragLinkDriver, GenevaMechanism, Loc
 from synthesis.kinds.indexing.problem import IndexingProblem
 
 CRESCENT_RAY_COUNT = 9
-"""Number of rays in which a crescent is measured to size it."""
+"""Number of rays along which the thickness of a crescent is measured."""
 
 
 def build_wheel(problem: IndexingProblem, drive: Geneva, center_distance: float) -> Wheel:
@@ -23,7 +23,7 @@ def build_wheel(problem: IndexingProblem, drive: Geneva, center_distance: float)
     step, radius = math.pi / problem.stations, drive.ratio * center_distance
     half_slot = 0.5 * (problem.roller + problem.clearances.slot)
     entry = center_distance * abs(1.0 - drive.signed * complex(math.cos(drive.half), math.sin(drive.half)))
-    # The rim goes through the entering roller's far side.
+    # The rim passes through the far side of the entering roller.
     reach = math.hypot(entry, 0.5 * problem.roller)
     end = center_distance + radius + problem.slot_room if internal else center_distance - radius - problem.slot_room
     lock = _compute_lock_radius(internal, step, center_distance, reach, half_slot + problem.wall)
@@ -53,7 +53,7 @@ def compute_margins(problem: IndexingProblem, drive: Geneva, center_distance: fl
     shaft = 0.5 * problem.crank_shaft_diameter
     disc = wheel.lock - problem.clearances.locking
     found = {
-        # NaN if any of them is.
+        # The minimum is NaN if any of the margins is.
         "locking_disc": float(np.min([disc - shaft, disc - 0.5 * problem.roller, wheel.land])),
         "web": wheel.web - problem.wall,
     }

@@ -14,7 +14,7 @@ ARC_TOLERANCE = 1e-9
 """Share of a radius within which a corner counts as on an arc."""
 
 BISECTION_COUNT, TRIAL_COUNT = 24, 48
-"""Number of halvings of half a station, for the play of a locked wheel, and of even steps at which it is tested."""
+"""Numbers of bisections, and of equal trial steps over half a station, for the play of a locked wheel."""
 
 
 def close_outline(outline: Complex) -> Complex:
@@ -72,9 +72,9 @@ def measure_play(deepest: Callable[[Real], Real], step: float) -> float:
     deepest : callable
         Depth of the wheel in the disc when it is turned by angles, shape (k,).
     step : float
-        Half the angle between stations: there a slot faces the disc, which may fit into it.
+        Half the angle between stations, at which a slot faces the disc, which may fit into it.
     """
-    # The angles rise densely from zero: beyond the first held angle the wheel may be free again.
+    # The trial angles rise densely from zero, because the wheel may be free again beyond the first held angle.
     tried = step * np.unique(
         np.concatenate([2.0 ** -np.arange(BISECTION_COUNT), np.arange(1, TRIAL_COUNT) / TRIAL_COUNT])
     )
@@ -93,7 +93,7 @@ def measure_play(deepest: Callable[[Real], Real], step: float) -> float:
 
 
 def measure_distance(outline: Complex, points: Complex) -> float:
-    """Return the least distance of points, shape (m,), from the edges of a closed outline."""
+    """Return the minimum distance of points, shape (m,), from the edges of a closed outline."""
     start = outline
     edge = np.roll(outline, -1) - outline
     apart = points[:, None] - start

@@ -39,7 +39,7 @@ MAX_CRANK_RATIO = 0.999
 """Maximum crank radius over center distance of a plane drive: at 1 the roller would reach the wheel's axis."""
 
 CRANK_TOLERANCE = 1e-5
-"""Share by which a crank may differ from that of shock-free entry and still count as it: six typed digits."""
+"""Maximum relative difference of a crank that counts as the crank of shock-free entry, for input with six digits."""
 
 MAX_ROLLERS = 5
 """Maximum number of rollers on a crank."""
@@ -358,7 +358,7 @@ class IndexingProblem(ProblemBase):
             found.append(Contradiction("/pawls", f"not applicable to {self.drive}; omit it"))
         if found:
             return found
-        # From here on the roller and the speed are known to be given.
+        # Beyond this line the roller and the speed are given.
         found += self._find_driver_errors()
         # A spherical drive has a sphere radius instead of lengths in the plane.
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
@@ -477,7 +477,7 @@ class IndexingProblem(ProblemBase):
 
     @property
     def teeth_choices(self) -> list[tuple[int, int]]:
-        """Numbers of teeth and of pawls whose stops are the stations, those with the fewest pawls first.
+        """Numbers of teeth and pawls that give the requested stations, those with the fewest pawls first.
 
         Pawls in g groups, staggered by 1/g of a pitch, stop z teeth at g z places; each group has the pawls that
         share the load.

@@ -27,7 +27,7 @@ from synthesis.model.linkage.conversion import to_point
 from synthesis.results.candidate_log import NUMERICAL_REASONS, CandidateLog
 
 MIN_HEIGHT_FACTOR = 1.6
-"""Factor on the minimum height of few teeth, at which the straight back would no longer fall towards its foot."""
+"""Factor on the tooth height of wheels with few teeth: below it the straight back would not fall towards its foot."""
 
 UNPROVEN_REASONS = NUMERICAL_REASONS | {
     "equal_stops",
@@ -40,7 +40,7 @@ UNPROVEN_REASONS = NUMERICAL_REASONS | {
     "falls_in",
     "no_face_locks",
 }
-"""Reasons that rest on rounding, or on values chosen here: with one of them an empty answer is no proof."""
+"""Reasons of rejection that depend on rounding or on values chosen here, so that an empty answer is no proof."""
 
 NO_FACE = "no_face_locks"
 """Reason if the pawl is too short for any face to draw it in."""
@@ -52,8 +52,8 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
     Returns
     -------
     IndexingResult
-        One design for each number of pawls: each has one wheel of the given size, or one smallest; complete unless one
-        is rejected for a reason that may depend on a height or length that is not given.
+        One design for each number of pawls, with the wheel of the given size or the smallest wheel. The answer is
+        complete unless a design is rejected for a reason that may depend on a height or length that is not given.
     """
     sifting = CandidateLog[IndexingDesign | RatchetDesign](problem)
     progress(0.0, "sizing")
@@ -71,7 +71,7 @@ def _is_proven(problem: IndexingProblem, sifting: CandidateLog[IndexingDesign | 
     """Return whether no other choice of omitted values could have satisfied the failed checks."""
     stated = problem.pawl
     if stated.tooth_height is None or stated.length is None:
-        # A height and a length are chosen here, and every constraint depends on them.
+        # Every constraint depends on the height and the length, which are chosen here.
         return not sifting.rejected
     unproven = UNPROVEN_REASONS if stated.wheel_radius is not None else UNPROVEN_REASONS | {"locking_angle"}
     return not unproven & sifting.rejected.keys()

@@ -1,4 +1,4 @@
-"""Motion and forces of an index by a route other than the closed forms: from the path of the roller.
+"""Motion and forces during an index, computed from the path of the roller instead of the closed forms.
 
 Seen along the wheel's axis the roller is a point z(α) of the complex plane about that axis, and the slot is the ray
 through it, so that the wheel's angle is arg z: φ' = Im(z'/z), and so on for higher derivatives of log z. The force on

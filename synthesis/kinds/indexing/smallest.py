@@ -1,7 +1,9 @@
-"""The smallest drive: every margin of walls and pin force grows with the size, so that the largest minimum decides.
+"""The smallest drive that keeps all constraints.
 
-So do measurements on outlines alone: with a constant clearance a larger wheel has less play and is held for
-longer. If the smallest drive by its walls fails one of these checks, the size is found at which it passes.
+Every margin of walls and of the pin force grows with the size. Each constraint therefore has a minimum size, and the
+largest of these is the answer. Measurements that are only possible on the outlines behave alike: with a constant
+clearance, a larger wheel has less play and is held for longer. If the smallest drive by its walls fails one of these
+checks, the smallest size that passes is searched.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.model.problem import MAX_MAGNITUDE
 
 BISECTION_COUNT = 70
-"""Number of bisections of an interval a thousand times as wide as the minimum size: to rounding."""
+"""Number of bisections: enough to reach rounding from an interval a thousand times as wide as the minimum size."""
 
 
 SIZE_DEPENDENT_CHECKS: dict[str, SizedBy] = {
@@ -65,7 +67,8 @@ def enlarge_until_verified(
     Returns
     -------
     IndexingDesign or str
-        The drive of minimum size if it fails no other check, or if no size up to ``LARGEST`` times as large helps.
+        The smallest drive that passes. The drive of minimum size if it fails another check as well, or if no size up to
+        :data:`MAX_GROWTH` times as large helps.
     """
     design = of_size(*least)
     lacking = _list_failed_checks(design)
@@ -108,7 +111,7 @@ def _compute_margin(problem: IndexingProblem, drive: Geneva, name: str, size: fl
 
 
 def find_least_size(margin: Callable[[float], float], first: float) -> float | None:
-    """Find the least size with a positive margin, which grows with the size, by bisection; None if none up to 1e9.
+    """Find the minimum size with a positive margin, which grows with the size, by bisection; None if none up to 1e9.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ UNPROVEN_REASONS = NUMERICAL_REASONS | {
     "locked_at_rest",
     "play",
 }
-"""Reasons that rest on outlines of finite steps or on rounding: with one of them an empty answer is no proof."""
+"""Reasons of rejection that depend on outlines of finite steps or on rounding, so that an empty answer is no proof."""
 
 STEADY_SAMPLES = 4001
 """Number of positions of an index at which the steadiness of the wheel is evaluated."""
@@ -73,8 +73,9 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
     Returns
     -------
     IndexingResult
-        One design for each number of rollers that keeps the constraints; complete, since each number has one drive of
-        the given size, or one smallest. ``summary`` gives the obstacle if there is none.
+        One design for each number of rollers that keeps the constraints. With a plain crank the answer is complete,
+        since each number has one drive of the given size, or one smallest drive. ``summary`` gives the obstacle if
+        there is no design.
     """
     if problem.drive == "ratchet":
         return solve_ratchet(problem, progress)

@@ -1,4 +1,4 @@
-"""Geneva drives on a sphere: their dimensions from its radius, and the constraints on its minimum.
+"""Spherical Geneva drives: dimensions for a given sphere radius, and the constraints that determine its minimum.
 
 The wheel's axis is z and its rim lies in the plane z = 0; the crank's axis is a direction of that plane. Slots lie on
 meridians, from the rim up to the latitude that the roller reaches, π/n plus a clearance. A locking hollow is cut by a
@@ -74,7 +74,7 @@ class Hemisphere:
 
     @property
     def inmost(self) -> float:
-        """Least distance of a slot from the wheel's axis."""
+        """Minimum distance of a slot from the wheel's axis."""
         return self.radius * math.cos(self.slot_end) - self.half_slot * math.sin(self.slot_end)
 
     @property

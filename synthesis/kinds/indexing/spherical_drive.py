@@ -1,4 +1,4 @@
-"""Distances of a finished spherical drive, measured in space: the wheel's edges against the cap of the crank.
+"""Clearances of a finished spherical drive, measured in space between the wheel's edges and the cap of the crank.
 
 The crank's axis is x, the wheel's z; in the middle of an index the roller is above x, at the angle of its cone.
 """
@@ -75,7 +75,7 @@ def measure_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
 
 
 def _measure_passing(mechanism: SphericalGenevaMechanism, wheel: float) -> float:
-    """Return the least distance of the roller's axis from the resting wheel, up to the roller's diameter.
+    """Return the minimum distance of the roller's axis from the resting wheel, up to the roller's diameter.
 
     The roller is a cylinder about a radius that goes below the plane of the rim. Edges are seen along its axis.
     """
@@ -103,7 +103,7 @@ def _measure_passing(mechanism: SphericalGenevaMechanism, wheel: float) -> float
 
 
 def _find_nearest(lines: NDArray[np.complex128], counted: NDArray[np.bool_]) -> float:
-    """Return the least distance of the origin from polylines, shape (m, n), of which only some pieces count."""
+    """Return the minimum distance of the origin from polylines, shape (m, n), of which only some pieces count."""
     start, piece = lines[:, :-1], np.diff(lines, axis=1)
     length = np.abs(piece) ** 2
     along = np.clip((-start * piece.conj()).real / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
@@ -111,7 +111,7 @@ def _find_nearest(lines: NDArray[np.complex128], counted: NDArray[np.bool_]) -> 
 
 
 def _draw_hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
-    """Return the edge of the hollow after a slot, unit vectors above the rim in the wheel's frame, (AROUND, 3)."""
+    """Return the edge of the hollow after a slot as unit vectors above the rim in the wheel's frame, shape (n, 3)."""
     angle = math.radians(mechanism.locking_arc_angle)
     around = np.linspace(0.0, math.pi, POINTS_PER_EDGE)
     axis = math.pi * (2 * station + 1) / mechanism.stations
@@ -144,7 +144,7 @@ def _list_lines(mechanism: SphericalGenevaMechanism, stations: Iterable[int]) ->
 
 
 def _measure_depth(edges: Real, crank: Real, wheel: Real, cap: float, offset: float) -> Real:
-    """Return the greatest depth, radians, of the wheel's edges in the cap at each position; negative if separate."""
+    """Return the maximum depth, radians, of the wheel's edges in the cap at each position; negative if separate."""
     cosine, sine = np.cos(wheel)[:, None], np.sin(wheel)[:, None]
     x, y = cosine * edges[:, 0] - sine * edges[:, 1], sine * edges[:, 0] + cosine * edges[:, 1]
     from_axis = np.arccos(np.clip(x, -1.0, 1.0))

@@ -1,8 +1,8 @@
-"""The best layshaft gearboxes: every tooth sum and head pair, and for each the nearest pair for every gear.
+"""The best layshaft gearboxes: every tooth sum and head pair, with the nearest pair for every gear.
 
-Once tooth sum S and head pair a, b are chosen, the gears are independent: for pairs c, d = S − c the
-ratio (b/a)(S − c)/c falls with c, so that the nearest to a requested ratio is one of the two c next to the real
-solution S/(1 + t a/b). Reverse uses the nearest of all pairs that do not touch each other and leave space for an idler.
+For a given tooth sum S and head pair a, b, the gears are independent. For pairs c, d = S − c, the ratio (b/a)(S − c)/c
+falls with c, so that the nearest to a requested ratio t is one of the two integers c next to the real solution
+S/(1 + t a/b). Reverse uses the nearest of all pairs that do not touch each other and leave space for an idler.
 """
 
 from __future__ import annotations
@@ -158,9 +158,9 @@ def _list_reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Integers, 
 def _find_sound_idler(counts: Integers, one: Integers, idler: Integers, other: Integers, angle: float) -> Integers:
     """Return the smallest idler from ``idler`` on that interferes with neither gear; beyond the range if none exists.
 
-    An idler can be too small for a large mate and too large for a small one: for each mate the sound ones are those
-    between two limits, since z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same with z₁ and z₂ exchanged, are
-    monotonic in z₂.
+    An idler can be too small for a large mate and too large for a small one. For each mate, the sound idlers lie
+    between two limits, because the condition z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same with z₁ and z₂
+    exchanged, are monotonic in z₂.
     """
     real = counts.astype(np.float64)
     # Table of all pairs of tooth numbers, evaluated once.

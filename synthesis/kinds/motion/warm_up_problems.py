@@ -11,7 +11,7 @@ _FORCES: JsonObject = {
     "constraints": {"max_drive_torque": 1e6},
     "max_designs": 1,
 }
-"""Bodies, and a limit of forces that every design keeps."""
+"""Fields of a problem with forces: link masses, and a limit that every design satisfies."""
 
 _MANUFACTURE: JsonObject = {
     "round": {"length": 0.5, "coordinates": 0.5},

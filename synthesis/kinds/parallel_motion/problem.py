@@ -23,8 +23,8 @@ from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import CANCELLATION_TOLERANCE, Contradiction, Degrees, Statement
 
 PIN_TOLERANCE = 1e-6
-"""Distance of P from A or B, as a share of the coupler, below which P is on the pin: it has no cognate, and P runs on a
-circle."""
+"""Distance of P from A or B, as a share of the coupler, below which P counts as on the pin. P then moves on a circle,
+and the fourbar has no cognates."""
 
 
 JOINT_NAMES = frozenset({"O2", "O4", "A", "B"})

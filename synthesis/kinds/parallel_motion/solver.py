@@ -1,5 +1,4 @@
-"""Build sixbars for parallel motion from a fourbar, its cognates, or the fourbars of a path problem, and verify
-them."""
+"""Build and verify sixbars for parallel motion from a fourbar, its cognates, or the fourbars of a path problem."""
 
 from __future__ import annotations
 
@@ -36,7 +35,7 @@ PATH_PROGRESS_SHARE = 0.9
 """Share of the progress assigned to a path problem."""
 
 REJECTION_REASONS = DEFECT_REASONS | {"translates": "rotation", "on_curve": "deviation"}
-"""Reasons of rejections by failed check; other checks name their own reason."""
+"""Rejection reason by failed check; other checks use their own name."""
 
 
 class _SourceFourbar(NamedTuple):
@@ -82,7 +81,7 @@ def warm_up() -> None:
 
 
 def _rank_designs(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
-    """Rank designs; equally good ones keep their order: the given fourbar, then its cognates."""
+    """Rank designs. Equally good ones keep their order: first the given fourbar, then its cognates."""
     return rank_designs(
         designs, rank_by, {"accuracy": lambda design: design.metrics.rms_residual}, ties=lambda design: 0.0
     )
@@ -135,7 +134,7 @@ def _reverse_input(joints: FourbarConfiguration) -> FourbarConfiguration:
 
 
 def _convert_to_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
-    """Return the analysis core's value of a fourbar with these joints, its input angle and its assembly."""
+    """Convert joints to a fourbar of the analysis core; return it with its input angle, radians, and its assembly."""
     o2, a, b, o4, p = joints
     coupler = b - a
     linkage = Fourbar(o2, o4, abs(a - o2), abs(coupler), abs(b - o4), (p - a) / coupler * abs(coupler))

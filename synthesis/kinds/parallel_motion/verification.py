@@ -1,7 +1,7 @@
 """Verify a parallel motion: drive the sixbar from its skeleton, and measure the body's rotation.
 
-P is compared with the given fourbar without driving that: a point is on its curve if the coupler, placed with A on the
-input's circle and P on the point, has B at the output's length from O4.
+P is compared with the curve of the given fourbar without driving that fourbar: a point is on the curve if the coupler,
+placed with A on the input's circle and P on the point, has B at the output's length from O4.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ TRANSLATION_TOLERANCE = 1e-9
 """Maximum rotation of the body, radians, and maximum distance of P from the curve, as a share of the curve's size."""
 
 ROUNDING_ALLOWANCE = 64.0 * float(np.finfo(np.float64).eps)
-"""Allowance for rounding in addition, as a share of the largest coordinate over the body's length or the curve's
+"""Additional allowance for rounding, to be multiplied by the largest coordinate over the body's length or the curve's
 size."""
 
 MIN_TOGGLE_SINE = 1e-6
 """Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
 TOGGLE_MARGIN_SHARE = 0.01
-"""Share of its range, at each toggle, that an input between toggles leaves out."""
+"""Share of the range of an input between toggles that is left out at each toggle."""
 
 
 class _PathVerification(NamedTuple):
@@ -177,7 +177,7 @@ def _has_passed(path: _PathVerification, name: str) -> bool:
 
 
 def _list_inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Real:
-    """Return the inputs of the range: a full turn, the path's rotation, or nearly from toggle to toggle."""
+    """Return the inputs of the range: a full turn, the path's rotation, or almost from toggle to toggle."""
     at = float(mechanism.reference_input)
     if turns:
         return list_full_turn(at)
@@ -195,13 +195,15 @@ def _list_inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -
 
 
 def _measure_curve_distance(linkage: SourceLinkage, points: Complex) -> Real:
-    """Return the approximate distance of points from a fourbar's coupler curve: B's distance from the output's
-    circle."""
+    """Return the approximate distance of points from a fourbar's coupler curve.
+
+    It is the distance of B from the output's circle, with A on the input's circle and P on the point.
+    """
     o2, o4 = complex(*linkage.fixed_pivots.input), complex(*linkage.fixed_pivots.output)
     a, b, c = linkage.links.input, linkage.links.coupler, linkage.links.output
     arm = linkage.coupler_point.distance * np.exp(1j * math.radians(linkage.coupler_point.angle))
     reach = points - o2
-    # A point on the input's pivot has no direction from it.
+    # Avoid a division by zero at a point on the input's pivot.
     f = np.maximum(np.abs(reach), np.finfo(np.float64).tiny)
     cosine = np.clip((a * a + f * f - abs(arm) ** 2) / (2.0 * a * f), -1.0, 1.0)
     misses = []

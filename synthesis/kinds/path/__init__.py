@@ -30,7 +30,7 @@ def _warm_up() -> None:
 
 
 def _is_brief(problem: PathProblem) -> bool:
-    """Return whether the problem is solved in a moment: points with crank angles need no search for their timing."""
+    """Return whether the problem is solved quickly: points with crank angles need no search for their timing."""
     return problem.prescribed
 
 

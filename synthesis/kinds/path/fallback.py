@@ -3,8 +3,8 @@
 Few points may still be too many: no linkage of the family may visit them in the given order, or satisfy the
 constraints. Nine points on an ellipse are searched like any others: a coupler curve is of the sixth order and may cross
 an ellipse twelve times, so that their position does not rule out a fourbar. The answer is then that of least squares,
-with the account and the summary of both searches. Exact points were requested, so that a fit which misses one by far is
-no answer: the result is then empty, and its summary reports how near a fit comes.
+with the account and the summary of both searches. Because exact points were requested, a fit that misses a point by far
+is no answer: the result is then empty, and its summary reports how near a fit comes.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ EXACT_PROGRESS_SHARE = 0.8
 """Share of the progress assigned to the exact search."""
 
 MAX_FIT_MISS = 0.05
-"""Maximum miss of a point, as a share of the task's size, of a fit that replaces an exact design."""
+"""Maximum distance from a point, as a share of the task's size, of a fit that replaces an exact design."""
 
 Solve = Callable[[PathProblem, Progress], PathResult]
 

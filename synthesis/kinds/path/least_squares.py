@@ -1,8 +1,8 @@
 """Fit points: linkages by least squares, each driven over its used range, the nearest first.
 
-Least squares evaluates the points alone, and a linkage that is nearest there may go anywhere between them. If the
-nearest ones do (:mod:`synthesis.kinds.path.task.ranking`), linkages whose whole curves have the shape of the points'
-course are fitted too (:mod:`synthesis.kinds.path.curve.solver`). If a start is given, the fit descends from it alone.
+Least squares evaluates the points alone, and a linkage that is nearest there may stray far between them. If the nearest
+ones stray (:mod:`synthesis.kinds.path.task.ranking`), linkages whose whole curves have the shape of the points' course
+are fitted too (:mod:`synthesis.kinds.path.curve.solver`). If a start is given, the fit descends from it alone.
 """
 
 from __future__ import annotations
@@ -35,15 +35,14 @@ MIN_DRIVEN = 12
 """Minimum number of linkages that are verified, even if fewer designs are requested."""
 
 STRAY_RATIO = 1.5
-"""The nearest designs stray if the minimum error over the used range exceeds that at the points alone by this
-factor."""
+"""Ratio of the minimum error over the used range to that at the points alone above which the nearest designs stray."""
 
 POINT_FIT_PROGRESS_SHARE = 0.6
 """Share of the progress assigned to fits of the points alone."""
 
 FIT_DUPLICATE_TOLERANCE = 1e-3
-"""Fits whose joints agree to this share of the task's size are duplicates: a flat minimum is known to no more
-digits."""
+"""Fits whose joints agree to this share of the task's size are duplicates. A flat minimum has no more reliable digits.
+"""
 
 
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
@@ -93,17 +92,17 @@ class _PointFits(PathCandidateLog):
     """The verified fits, their selection, order and summary."""
 
     def is_astray(self) -> bool:
-        """Return whether no passed design comes as near over its used range as the nearest does at the points."""
+        """Return whether every passed design strays over its used range, compared with the nearest at the points."""
         least = min((design.metrics.rms_distance for design in self.passed), default=0.0)
         nearest = max(least, ERROR_TOLERANCE * self.problem.task_size)
         return find_min_error(self.passed, self.problem) > STRAY_RATIO * nearest
 
     def select_distinct(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Return distinct designs, nearest first unless another order is requested or points have tolerances (then by
-        quality).
+        """Return distinct designs, nearest first unless another order is requested.
 
-        The design nearest at the points alone is always among those returned, last if it strays between them: distant
-        points say little about the curve between them.
+        If points have tolerances, designs are ordered by quality. The design nearest at the points alone is always
+        returned, in the last place if it strays between them, because distant points do not define the curve between
+        them.
         """
         # Within tolerances all designs are near enough.
         if self.problem.tolerances is not None:

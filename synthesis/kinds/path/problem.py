@@ -57,8 +57,8 @@ MAX_POINTS = 1000
 """Maximum number of points accepted; a curve that needs more is oversampled."""
 
 MAX_LINK_DIAGONALS = 5.0
-"""Longest link of a curve match without a limit, in diagonals of the box around the curve: fits without one run off to
-links that are many times longer without being better."""
+"""Maximum link length of a curve match if no limit is given, in diagonals of the box around the curve. Without a limit
+fits tend to links that are many times longer without being better."""
 
 
 class PathPoint(Statement):

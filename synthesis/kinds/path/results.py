@@ -1,4 +1,4 @@
-"""Collect the results of a search: verified designs, reasons for rejections, and the answer built from them."""
+"""Results of a search: verified designs, reasons for rejections, and the answer built from them."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class PathCandidateLog(CandidateLog[PathDesign]):
 
     @property
     def unproven(self) -> bool:
-        """Whether solutions were rejected only because of rounding, without any measurement against them.
+        """Whether solutions were rejected only because of rounding, with no measurement that refutes them.
 
-        The designs found may then not be called all solutions.
+        The designs found must then not be called all solutions.
         """
         return bool(NUMERICAL_REASONS & self.rejected.keys())
 
@@ -94,8 +94,10 @@ class PathCandidateLog(CandidateLog[PathDesign]):
 
 
 def select_distinct_designs(designs: list[PathDesign], count: int, apart: float) -> list[PathDesign]:
-    """Return the first designs, at most ``count``, with some joint at least ``apart`` from its place in all earlier
-    ones."""
+    """Return the first distinct designs, at most ``count``.
+
+    A design is distinct if some joint is at least ``apart`` from its position in each earlier design.
+    """
     names = ("O2", "A", "B", "O4")
     joints = [[complex(*design.mechanism.skeleton.joints[name]) for name in names] for design in designs]
     return [designs[n] for n in select_distinct(joints, count, apart)]

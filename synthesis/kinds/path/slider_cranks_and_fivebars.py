@@ -1,9 +1,9 @@
 """Slider-cranks and geared fivebars that guide a point: exactly, by least squares, or along a whole curve.
 
 The same search serves all three: shapes of many linkages are compared with a curve through the points, the most similar
-go to least squares at the points with the crank angle at each as an unknown, and the results are driven. At most as
-many points as a linkage has dimensions are met exactly (eight by a slider-crank, eleven by a geared fivebar of given
-ratio); the freedom that fewer points leave goes into the constraints and the ranking.
+ones are refined by least squares at the points with the crank angle at each as an unknown, and the results are driven.
+At most as many points as a linkage has dimensions are met exactly (eight by a slider-crank, eleven by a geared fivebar
+of given ratio). The freedom that fewer points leave goes into the constraints and the ranking.
 
 A geared fivebar of ratio +1 that draws the curve of a fourbar is known from it (Norton, Sec. 3.7 and Fig. 3-28): O2 A P
 A′ and O4 B P B′ are parallelograms, the cranks O2 A′ and O4 B′ turn with the fourbar's coupler, and P is the pin of the
@@ -59,8 +59,8 @@ from synthesis.results.ranking import select_distinct
 Mechanism = SliderCrankMechanism | GearedFivebarMechanism
 
 CLOSED_DRAW_COUNT, OPEN_DRAW_COUNT = 49152, 8192
-"""Number of linkages of a family drawn for a closed curve, and for a stroke, which is compared with parts of each
-curve."""
+"""Number of linkages of a family drawn for a closed curve, and for a stroke, with which parts of each curve are
+compared."""
 
 MAX_FOLLOWED, MAX_REFINED, MAX_DRIVEN = 150, 24, 16
 """Maximum numbers: of similar linkages that are fitted to the points; of the best of them that are refined; and of
@@ -89,7 +89,7 @@ DESIGN_DUPLICATE_TOLERANCE = 1e-4
 """Designs whose joints agree to this share of the task's size are duplicates."""
 
 MAX_COGNATES = 3
-"""Maximum number of fourbars whose geared cognates are offered, each with up to three."""
+"""Maximum number of fourbars whose geared cognates, up to three for each, are offered."""
 
 MIN_TRANSMISSION_ANGLE, ANGLE_MARGIN = 3.0, 0.01
 """Minimum transmission angle, degrees, of every slider-crank whose crank turns through, and the margin added to a
@@ -224,10 +224,10 @@ def _list_min_angles(problem: PathProblem) -> list[float]:
 def _fit_constrained(
     search: _Search, family: int, fits: Descent, sign: Real, points: Complex, limits: LinkageLimits
 ) -> tuple[Descent, Real, NDArray[np.bool_]]:
-    """Lead fits to the stance, to their required fixed pivots and to one or more transmission angles.
+    """Refit linkages under the stance, the required fixed pivots and one or more transmission angles.
 
-    In a descent the distances of pivots and points trade against each other; both vanish for exact points, but not for
-    fits.
+    In an unconstrained descent the distances of pivots and of points trade against each other. Both vanish for exact
+    points, but not for fits.
 
     Returns
     -------
@@ -267,8 +267,7 @@ def _fit_constrained(
 
 
 def _check_constraints(family: int, x: Real, within: Real, cosine: float) -> bool:
-    """Return whether the fixed pivots of a fit satisfy their limits, and a slider-crank its minimum transmission
-    angle."""
+    """Return whether a fit satisfies the limits of its fixed pivots and, as a slider-crank, the transmission angle."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     compute_lengths(family, x, lengths, chart)
     off, slopes = np.zeros(4), np.zeros((4, len(x)))
@@ -277,8 +276,10 @@ def _check_constraints(family: int, x: Real, within: Real, cosine: float) -> boo
 
 
 class _PartialFits(NamedTuple):
-    """Linkages during the search: unknowns (n, m), assembly signs (n,), crank angles (n, points), sums of squares
-    (n,)."""
+    """Linkages during the search.
+
+    They consist of unknowns (n, m), assembly signs (n,), crank angles (n, points) and sums of squares (n,).
+    """
 
     x: Real
     sign: Real
@@ -377,8 +378,10 @@ def build_geared_fivebar(
 def _build_mechanism(
     family: int, x: Real, sign: float, ratio: float, theta: float, centre: complex, size: float
 ) -> Mechanism | None:
-    """Return the dimensions of a fit, in the problem's own coordinates; None if a link is shorter than
-    :data:`MIN_LINK`."""
+    """Return the dimensions of a fit in the problem's coordinates.
+
+    Returns None if a link is shorter than :data:`MIN_LINK`.
+    """
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     compute_lengths(family, x, lengths, chart)
     closes, p, unit = place_linkage(family, x, lengths, sign, ratio, theta)

@@ -33,7 +33,7 @@ FAMILY_PROGRESS_SHARE = 0.5
 
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
-    """Solve a problem of path generation; every design brings its cognates."""
+    """Solve a problem of path generation, and add the cognates to every design."""
     result = (
         _solve_single_type(problem, progress)
         if problem.mechanisms is None
@@ -46,10 +46,10 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _solve_family_first(problem: PathProblem, progress: Progress) -> PathResult:
-    """Search the family that fewer than nine points leave near a smooth curve; draw further points if that fails."""
+    """Search the family of fewer than nine points near a smooth curve; draw further points if that fails."""
     near = solve_family(problem, scale_progress(progress, 0.0, FAMILY_PROGRESS_SHARE))
     if near.search.accepted or is_workspace_constrained(problem):
-        # Linkages through additional random points would hardly fit into a workspace; fits are led into it.
+        # Linkages through additional random points would hardly fit into a workspace, whereas fits are moved into it.
         progress(1.0, "verified")
         return near
     return solve_nine_points(problem, scale_progress(progress, FAMILY_PROGRESS_SHARE, 1.0))

@@ -1,4 +1,4 @@
-"""Choose the type of linkage that guides the point: the simplest one that is sound and near, and better ones after it.
+"""Selection of the linkage type that guides the point: the simplest sound and near one, followed by better ones.
 
 Simpler types are searched first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
 satisfies all constraints is the only answer if it transmits force well enough
@@ -49,7 +49,7 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     problem : PathProblem
         With :attr:`PathProblem.mechanisms`.
     of_one : callable
-        Solves for one of the types with one closure, as without that field.
+        Solver for a single type with one closure, as requested without that field.
     progress : callable
         Receives the share of the work done.
     """
@@ -85,8 +85,9 @@ def _is_sufficient(problem: PathProblem, design: PathDesign) -> bool:
 def combine_results(
     problem: PathProblem, simple: PathResult, found: PathResult, before: list[str], name: str
 ) -> PathResult:
-    """Combine the results of simpler linkages and of another type; passed designs that are not listed count as
-    outranked.
+    """Combine the results of simpler linkages and of another type.
+
+    Designs that passed but are not listed count as outranked.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from synthesis.model.gears import mesh_limits
 from synthesis.model.gears.answer import Ratio
 
 MIN_ADDENDUM = 0.5
-"""Minimum remaining addendum, in modules, of a ring that is shortened although this is not required."""
+"""Minimum remaining addendum, in modules, of a ring with teeth that are shortened although this is not required."""
 
 
 def build_demands(problem: PlanetaryProblem, arrangement: Arrangement, module: float | None = None) -> Demands:
@@ -26,7 +26,7 @@ def build_demands(problem: PlanetaryProblem, arrangement: Arrangement, module: f
         {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
         problem.planets,
         problem.spacing == "equal",
-        # The most favourable module of the list counts: the finest for size, the coarsest for clearance.
+        # Use the most favourable modules of the list: the finest for size, the coarsest for clearance.
         math.radians(problem.pressure_angle),
         problem.min_contact_ratio,
         problem.compute_min_clearance(listed[-1]),

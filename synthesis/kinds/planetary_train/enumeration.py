@@ -19,9 +19,10 @@ from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
 
 @dataclass(frozen=True)
 class SoundTrains:
-    """The trains of one arrangement and choice of members: N and D of the ratios N/D, and teeth of one copy of all.
+    """The trains of one arrangement and choice of members: N and D of the ratios N/D, and the sums of teeth.
 
-    If two planet sets are coupled, every row of one is combined with every row of the other. N and D may be 0.
+    The sums count the teeth of one copy of every planet. If two planet sets are coupled, every row of one is combined
+    with every row of the other. N and D may be 0.
     """
 
     arrangement: str
@@ -41,7 +42,7 @@ class SoundTrains:
 
 
 def list_every_train(problem: PlanetaryProblem) -> Iterator[SoundTrains]:
-    """Yield the trains of every arrangement and choice of members that the problem permits; locked ones have none."""
+    """Yield the trains of every arrangement and choice of members that the problem permits, without locked trains."""
     for arrangement in problem.arrangements:
         numbers = [
             ToothNumbers(arrangement, planets, build_demands(problem, arrangement))

@@ -1,4 +1,4 @@
-"""The trains of an arrangement whose ratio is nearest to a target: by error, and for every size.
+"""Search for the trains of an arrangement with the ratio nearest to a target, overall and for every size.
 
 Numerator and denominator of every ratio are integers that double precision holds exactly; only their quotient is
 rounded, by 1e-16 of itself. Errors that differ by less than :data:`ERROR_TOLERANCE` are compared as exact fractions, so
@@ -56,8 +56,8 @@ class Candidate(NamedTuple):
 class NearestTrains:
     """The best trains of one arrangement and choice of members.
 
-    ``best`` in order of error, size and number of teeth; ``by_size`` the train of minimum error of each size; ``ties``
-    the number of trains with the minimum error of all.
+    ``best`` are the best trains in the order of error, size and number of teeth. ``by_size`` are the trains of minimum
+    error for each size. ``ties`` is the number of trains with the overall minimum error.
     """
 
     best: list[Candidate] = field(default_factory=list)
@@ -202,7 +202,7 @@ def _search_one_set(
 
 
 class TrainValue(NamedTuple):
-    """The two members besides the carrier of a planet set, the carrier, and ω_one/ω_other relative to it as n/d."""
+    """The train value of a planet set: its carrier, its two other members, and ω_one/ω_other relative to it as n/d."""
 
     one: str
     other: str
@@ -357,7 +357,7 @@ class _TwoSetSearch:
         one, other = self._sides
         firsts, values = one.starts, other.value[other.starts]
         at = np.searchsorted(values, self._coupling.solve_partner(one.read_values(firsts), float(self._target)))
-        # One more on each side, because rounding may put a neighbour on the wrong side.
+        # Take one more on each side, because rounding may put a neighbour on the wrong side.
         width = count + 1
         steps = range(-width, width) if 2 * width <= len(values) else range(len(values))
         # The projective line is closed: neighbours beyond one end continue at the other.

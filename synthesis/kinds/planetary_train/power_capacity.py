@@ -1,7 +1,7 @@
 """Selection of the planetary trains that carry a given power, with their modules and face widths.
 
-The search ranks trains by error or size without regard to strength. They are judged in that order, so that the first
-that carry the power are the best that do; if all trains of the search were judged there is no other.
+The search ranks trains by error or size without regard to strength. Strength is judged in that order, so that the first
+trains that carry the power are the best ones. If all trains of the search were judged, there is no other.
 """
 
 from __future__ import annotations
@@ -55,10 +55,10 @@ class CarryingTrain(NamedTuple):
 class StrengthResult(NamedTuple):
     """Result of judging the trains of a search.
 
-    ``best`` are the best trains that carry the power, ``front`` the Pareto set of all judged ones that do, of which
-    ``ties`` have the minimum error. ``failed`` counts the trains ranked above the last of the best that do not;
-    ``strongest`` is the greatest power in W that any train carries. ``every``: the search has no trains besides the
-    ``judged``; ``proven``: no train is better than the best.
+    ``best`` are the best trains that carry the power, ``front`` is the Pareto set of all judged trains that do, and
+    ``ties`` of them have the minimum error. ``failed`` counts the trains ranked above the last of ``best`` that do not
+    carry it. ``strongest`` is the maximum power in W that any train carries. ``every`` is true if the ``judged`` trains
+    are all trains of the search, ``proven`` if no train is better than ``best``.
     """
 
     best: list[CarryingTrain]
@@ -151,7 +151,7 @@ class _MeshTeeth(NamedTuple):
 
 @dataclass
 class TrainJudge:
-    """Judges the power that the meshes of a problem carry; each mesh is judged once."""
+    """A cache of the power that the meshes of a problem carry, and the selection of modules and faces by it."""
 
     problem: PlanetaryProblem
     stated: PlanetPower

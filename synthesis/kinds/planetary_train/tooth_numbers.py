@@ -1,15 +1,13 @@
 """All sound tooth numbers of one planet set, found by trying every combination of its independent gears.
 
-Gears are chosen one after the other. If a planet meshes with a second sun or ring, coaxiality gives its teeth. Every
-other condition (limits, sound teeth, assembly, clearance) rejects combinations as soon as all its gears are chosen, for
-whole blocks at a time. Lengths are in half modules, so that a pin's distance from the axis is an integer: s + p or
-r − p.
+Gears are chosen one after the other. The teeth of a second sun or ring of a planet follow from coaxiality. Every other
+condition (limits, sound teeth, assembly, clearance) rejects combinations as soon as all its gears are chosen, for whole
+blocks at a time. Lengths are in half modules, so that a pin's distance from the axis is an integer: s + p or r − p.
 
-Assembly: a planet set can be assembled at the multiples of 1/M of a turn, with M the greatest common
-divisor of ±S ± R for two gears about the axis on one planet gear (or on two that mesh), and of
-(z₂ c₁ − z₁ c₂)/gcd(z₁, z₂) for two gears z₁, z₂ of a stepped planet, c the teeth of their rings or, taken negative,
-of their suns.
-Equal spacing needs n to divide M.
+Assembly: a planet set can be assembled at the multiples of 1/M of a turn. M is the greatest common divisor of two kinds
+of numbers: ±S ± R for two gears about the axis that mesh with one planet gear (or with two that mesh), and
+(z₂ c₁ − z₁ c₂)/gcd(z₁, z₂) for two gears z₁, z₂ of a stepped planet, where c are the teeth of their rings or, with a
+minus sign, of their suns. Equal spacing of n planets requires that n divides M.
 """
 
 from __future__ import annotations
@@ -108,7 +106,7 @@ class ToothNumbers:
             return
         gear = self._free[step]
         values = np.arange(self.combinations and self._demands.limits[gear][0], self._demands.limits[gear][1] + 1)
-        # Split the rows, so that the extended block stays within MAX_BLOCK.
+        # Split the rows, so that the extended block stays within MAX_BLOCK_SIZE.
         at_once = max(1, MAX_BLOCK_SIZE // len(values))
         # Rules that only involve earlier gears were applied already.
         before = frozenset(block)
@@ -293,7 +291,7 @@ def _build_assembly_forms(
 
 
 def _list_phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, list[tuple[int, str]]]:
-    """Return for each planet gear the signed suns and rings of which its phase at an angle is a multiple.
+    """Return, for each planet gear, the signed suns and rings that determine its phase at an angle.
 
     A gear without a sun or ring takes the phases of the planet gear that it meshes with, with the opposite sign.
     """
@@ -452,7 +450,7 @@ def _build_copies_rule(numbers: ToothNumbers, one: str, other: str, need: float)
 
 
 def _find_link(arrangement: Arrangement, here: str, there: str) -> tuple[str, str]:
-    """Return the gears by which two planets mesh."""
+    """Return the two gears through which two planets mesh."""
     for pair in arrangement.meshes:
         if {arrangement.places[gear].body for gear in pair} == {here, there}:
             return pair

@@ -40,7 +40,7 @@ TIP_DEPTH_TOLERANCE = 1e-6
 """Apparent tip interference, in modules, of flanks that touch: the positions of the tools are tried in steps."""
 
 ROUNDING_TOLERANCE = 1e-9
-"""Share by which a safety or a face may miss its limit by rounding."""
+"""Relative shortfall of a safety or a face that is attributed to rounding."""
 
 
 def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:

@@ -11,8 +11,8 @@ import math
 from collections.abc import Callable
 
 MAX_LINK_RATIO = 20.0
-"""Link ratio above which a design is offered only as far as needed to come near to the best transmission angle, or to
-the required one."""
+"""Maximum link ratio of a practical design. It is exceeded only as far as the best transmission angle, or the required
+one, makes necessary."""
 
 LINK_RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
 """Link ratios at which designs with shorter links than the best one's are offered too."""
@@ -21,17 +21,18 @@ MIN_TRANSMISSION_ANGLE = math.radians(10.0)
 """Minimum transmission angle of such designs, radians."""
 
 RANGE_END_TOLERANCE = 1e-9
-"""Radians from the end of the range within which all members are change points, up to rounding."""
+"""Distance from the end of the range of families, radians, below which all members are change points up to rounding."""
 
 LIMIT_TOLERANCE = 1e-9
-"""Relative distance of a length or a link ratio from its limit, so that rounding does not carry it beyond."""
+"""Relative margin from the limit of a length or a link ratio, so that rounding does not violate the limit."""
 
 
 def list_shorter_members(
     best: float, at_link_ratio: Callable[[float], float], transmission: Callable[[float], float]
 ) -> list[float]:
-    """Return members with smaller link ratios than the best one's, by their couplers over the crank, in decreasing
-    order.
+    """Return members of a family with smaller link ratios than the best member, longest first.
+
+    Each member is represented by its ratio of coupler to crank.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def list_shorter_members(
     members: list[float] = []
     for ratio in LINK_RATIOS:
         member = at_link_ratio(ratio)
-        # Only members that are really shorter than all before.
+        # Skip members that are no shorter than those already listed.
         if 1.0 < member < min([best, *members]) and transmission(member) >= MIN_TRANSMISSION_ANGLE:
             members.append(member)
     return members

@@ -51,11 +51,11 @@ BEST_ANGLE_TOLERANCE = math.radians(0.005)
 """Tolerance of the best transmission angle, radians: half of the hundredth of a degree that answers show."""
 
 MAX_COUPLER_RATIO = 1e6
-"""Maximum of coupler over crank; longer ones differ from the bound by less than rounding."""
+"""Maximum ratio of coupler to crank. The transmission angle of longer couplers equals its bound to rounding."""
 
 
 class CrankRockerFamily(NamedTuple):
-    """Crank-rockers whose rocker swings by ψ while the crank turns by φ from extension to overlap; radians."""
+    """Family of crank-rockers: the rocker swings by ψ while the crank turns by φ from extension to overlap, radians."""
 
     phi: float
     psi: float
@@ -124,14 +124,14 @@ class CrankRockerFamily(NamedTuple):
 
     @property
     def supremum(self) -> float:
-        """The best transmission angle, or its bound that no member reaches; radians."""
+        """The best transmission angle, radians, or for a time ratio of 1 its bound, which no member reaches."""
         best = self.find_best()
         return self.compute_transmission(best) if math.isfinite(best) else 0.5 * (math.pi - self.psi)
 
     def find_near_best(self, demanded: float) -> float:
-        """Return the ρ of the best, or of the shortest links that come near to it if its own are very long.
+        """Return the ρ of the best member, or of a shorter one that transmits almost as well if the best is very long.
 
-        Near enough to have the ``demanded`` transmission angle (radians), if the best exceeds it.
+        The shorter member has at least the ``demanded`` transmission angle, radians, if the best member has it.
         """
         best = min(self.find_best(), MAX_COUPLER_RATIO)
         # Up to this ratio the optimum itself is practical.
@@ -168,7 +168,7 @@ def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
 
 
 def build_crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
-    """Return the best of each family within the limit of the link ratio, and some with shorter links."""
+    """Return the best crank-rocker of each family within the limit of the link ratio, and some with shorter links."""
     assert problem.swing_angle is not None
     limit = problem.link_ratio_limit
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)

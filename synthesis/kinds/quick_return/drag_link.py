@@ -1,13 +1,14 @@
-"""Drag-link sixbars: a drag link drives a second crank unevenly, and this a rocker or a slider with equal strokes.
+"""Drag-link sixbars: a drag link turns a second crank unevenly, which drives a rocker or a slider with equal strokes.
 
 The second crank O4–B turns by half a turn in each stroke, from ψ0 on, and the input by α = 2π/(T + 1) in the fast one
 (Norton, Example 3-10). With the ground d = 1 as the shortest link a drag link's minimum transmission angle is
 
     cos μ = (|b² + c² − a² − 1| + 2a)/2bc,
 
-smallest for given a and c at b² = a² + 1 − c²; for c between 1 and √((a² + 1)/2) it then falls with c, while the time
-ratio of the best ψ0 rises. So c follows from T for each a, and a is found by a search in one dimension. For ratios
-below about 2.2 the transmission angle grows with a without end; a limit of the link ratio ends it.
+which is smallest for given a and c at b² = a² + 1 − c². For c between 1 and √((a² + 1)/2) this value then falls as c
+increases, while the time ratio of the best ψ0 rises. So c follows from T for each a, and a is found by a search in one
+dimension. For time ratios below about 2.2 the transmission angle grows with a without end, so that a limit of the link
+ratio determines a.
 
 The dyad: a slider whose slide passes through O4 along ψ0, of stroke 2c; or the rocker of a central crank-rocker of
 swing ψ, with c/sin(ψ/2) as its length and its transmission angle below π/2 − ψ/2.
@@ -31,13 +32,14 @@ MAX_LINK_RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
 """Maximum link ratios of the drag links that are searched."""
 
 MIN_INPUT_LENGTH = 1.0 + 1e-4
-"""Shortest crank that is searched, in grounds; with a crank like the ground every position is near a change point."""
+"""Minimum length of the input that is searched, in grounds. With an input as long as the ground the linkage is always
+close to a change point."""
 
 DIRECTION_COUNT = 90
 """Number of directions ψ0 that are evaluated first."""
 
 GOLDEN_RATIO, SECTION_COUNT = 0.6180339887498949, 40
-"""Share that a golden section keeps, and the number of sections: 4e-9 of the first interval is left."""
+"""Share of the interval that a golden section keeps, and number of sections, which reduce it to 4e-9 of its length."""
 
 LENGTH_COUNT = 25
 """Number of lengths of the input that are evaluated first."""
@@ -52,15 +54,18 @@ RATIO_MARGIN = 1e-8
 """Share by which the drag link's maximum time ratio exceeds the required one, so that some ψ0 gives that exactly."""
 
 SLIDER_DYAD_ANGLE = math.radians(75.0)
-"""Transmission angle of the slider's dyad, radians, unless a greater one is required."""
+"""Transmission angle of the slider's dyad, radians, unless a larger one is required."""
 
 ROCKER_DYAD_RATIO = 3.0
 """Link 5 over the second crank of a rocker's dyad, unless a transmission angle requires a longer one."""
 
 
 class DragLink(NamedTuple):
-    """A drag link in lengths of its ground, and the direction of the second crank at the beginning of the slow stroke
-    with the angle of the input there, both from the line O2 → O4, radians."""
+    """A drag link at the beginning of its slow stroke.
+
+    Lengths are in units of the ground. ``start`` is the direction of the second crank, ``input_angle`` that of the
+    input, both in radians from the line O2 → O4.
+    """
 
     input: float
     coupler: float
@@ -160,7 +165,7 @@ def find_drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
     Returns
     -------
     DragLink or None
-        None if no member of the family within the limit has the time ratio.
+        None if no drag link within the limit of the link ratio has the time ratio.
     """
     if link_ratio <= MIN_INPUT_LENGTH:
         return None
@@ -217,15 +222,14 @@ def _compute_input_angle(a: float, c: float, direction: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _compute_slow_rotation(a: float, c: float, start: float) -> float:
-    """Return the input rotation while the second crank turns half a turn from a direction on."""
+    """Return the input rotation, radians, while the second crank makes half a turn from the direction ``start``."""
     # Both angles are known modulo a full turn; the difference of a drag link is positive.
     return (_compute_input_angle(a, c, start + math.pi) - _compute_input_angle(a, c, start)) % (2.0 * math.pi)
 
 
 @njit(cache=True, nogil=True)
 def _find_slowest_direction(a: float, c: float) -> float:
-    """Find the direction from which half a turn of the second crank takes most of the input's turn, by golden
-    section."""
+    """Find the direction of the second crank from which its next half turn takes the longest, by golden section."""
     step = 2.0 * math.pi / DIRECTION_COUNT
     best, most = 0.0, -1.0
     for k in range(DIRECTION_COUNT):
@@ -263,7 +267,7 @@ def _find_start(a: float, c: float, time_ratio: float) -> float | None:
     best = _find_slowest_direction(a, c)
     if compute_error(best) < 0.0:
         return None
-    # Half a turn further on the strokes are exchanged, so that the root is bracketed.
+    # Half a turn later the slow and the fast stroke are exchanged, so the root is bracketed.
     return float(brentq(compute_error, best, best + math.pi, xtol=1e-15, rtol=1e-15))
 
 
@@ -276,7 +280,11 @@ def _build_mechanism(
     c_pin: complex,
     o6: complex | None,
 ) -> DragLinkMechanism:
-    """Build the sixbar at the beginning of its slow stroke; places in grounds, from O2 with the ground along +x."""
+    """Build the sixbar at the beginning of its slow stroke.
+
+    ``c_pin`` and ``o6`` are in units of the ground, from O2 with the ground along +x; ``scale`` and ``turn`` (a unit
+    vector) convert them to the problem's plane.
+    """
     o2 = problem.o2
     local = {
         "O2": 0j,

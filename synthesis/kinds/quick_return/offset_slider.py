@@ -1,7 +1,7 @@
 """The offset slider-crank of given stroke and time ratio with the best transmission angle, in closed form.
 
 The crank turns by φ = π + δ, δ = π (T − 1)/(T + 1), from the position in which crank and coupler extend each other to
-that in which they overlap; B is seen there from O2 in directions that differ by δ. With b = 1, x = a/b,
+that in which they overlap. Seen from O2, the directions to B in these two positions differ by δ. With b = 1, x = a/b,
 n = sin²(δ/2) and W = n + (1 − n) x² the triangle O2 B1 B2 gives the stroke and the offset
 
     H = 2 √W,        e = (1 − x²) √(n (1 − n))/√W,
@@ -48,7 +48,7 @@ def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
 
 
 def build_offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
-    """Return the best within the limit of the link ratio, and some with shorter couplers."""
+    """Return the best slider-crank within the limit of the link ratio, and some with shorter couplers."""
     assert problem.stroke is not None
     n = math.sin(0.5 * compute_stroke_imbalance(problem.time_ratio)) ** 2
     best = compute_best_ratio(n)
@@ -69,7 +69,7 @@ def build_offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankM
 
 
 def compute_best_ratio(n: float) -> float:
-    """Return crank over coupler of the best transmission angle; 0 for equal strokes."""
+    """Return the ratio of crank to coupler with the best transmission angle; 0 for equal strokes."""
     w = 0.5 * (n + math.sqrt(n * (n + 4.0)))
     return math.sqrt((w - n) / (1.0 - n))
 

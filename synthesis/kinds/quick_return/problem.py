@@ -39,10 +39,11 @@ GRASHOF_CLASSES: dict[QuickReturnType, str] = {
 """Grashof's class of the fourbar that the crank drives, for each type that has one."""
 
 MIN_ROTATION = 1e-4
-"""Minimum rotation of a body, degrees: for less the rotopole is a million times as far away as the body moves."""
+"""Minimum rotation of a body, degrees. At this rotation the rotopole is about half a million displacements away."""
 
 POLE_TOLERANCE = 1e-6
-"""Share of the body's distance from it by which a given rotopole may miss the computed one: printed digits."""
+"""Maximum distance of a given rotopole from the computed one, as a share of the body's distance from it: the precision
+of printed coordinates."""
 
 
 def compute_stroke_imbalance(time_ratio: float) -> float:
@@ -197,8 +198,10 @@ class QuickReturnProblem(LinkageProblem):
 
     @property
     def link_ratio_limit(self) -> float | None:
-        """Maximum of the longest link over the shortest: as given, or as implied by limits of length if the size is
-        free."""
+        """Maximum ratio of the longest to the shortest link, or None.
+
+        It is the given one, or follows from the limits of the lengths if the size is free.
+        """
         limits = [self.constraints.max_link_ratio] if self.constraints.max_link_ratio is not None else []
         lengths = self.constraints.link_length
         # With a free size only the ratio of both limits matters.
@@ -221,7 +224,7 @@ class QuickReturnProblem(LinkageProblem):
         return lengths.min / shortest if lengths is not None and lengths.min > 0.0 else 1.0 / rocker
 
     def find_contradictions(self) -> list[Contradiction]:
-        """Return an output that is not the type's, and requests that exclude one another."""
+        """Return outputs that the requested type does not have, and requests that exclude one another."""
         if self.positions is not None:
             return [*self._find_position_contradictions(), *self._find_class_contradictions()]
         contradictions = []

@@ -12,7 +12,8 @@ Both invert the slider-crank, with the crank shorter or longer than the ground. 
   where C is on that line, H = 2r, and the crank turns by π + 2 sin⁻¹(d/a) in the slow stroke: d/a = sin(δ/2). The
   coupler leans most by sin⁻¹(r/b).
 
-A ratio of 1 would need a crank (a distance of the pivots) without length; every greater one is reached.
+A ratio of 1 would require a crank-shaper's crank, or the distance of a Whitworth's pivots, to be zero. Every larger
+ratio is reached.
 """
 
 from __future__ import annotations
@@ -28,17 +29,17 @@ from synthesis.model.linkage.answer import FixedPivots, Line
 from synthesis.model.linkage.conversion import build_skeleton, build_slide, to_point
 
 MAX_PIN_REACH = 0.9
-"""Maximum distance of the crank pin from O4 on the slotted link, as a share of its arm to C: the block stays clear of
-C."""
+"""Maximum distance of the crank pin from O4 along the slotted link, as a share of the arm O4–C, so that the block stays
+clear of C."""
 
 SHAPER_COUPLER_RATIO = 1.0
-"""Coupler of a crank-shaper in strokes, unless a transmission angle requires a longer one."""
+"""Length of a crank-shaper's coupler, in strokes, unless a transmission angle requires a longer one."""
 
 LINE_HEIGHT_SHARE = 0.9
 """Height of the ram's line over the ends of the arc, as a share of that at which the ram would turn back too early."""
 
 WHITWORTH_COUPLER_RATIO = 4.0
-"""Coupler of a Whitworth in arms, for a transmission angle of 75.5°, unless a longer one is required."""
+"""Length of a Whitworth's coupler, in arms, unless a transmission angle requires a longer one; it gives 75.5°."""
 
 
 def compute_crank_shaper_range(problem: QuickReturnProblem) -> RatioRange:
@@ -86,7 +87,7 @@ def _make_range_above_one(problem: QuickReturnProblem, name: str, reason: str) -
 
 
 def _compute_coupler_ratio(problem: QuickReturnProblem) -> float:
-    """Return the coupler over the height that it bridges, for the required transmission angle."""
+    """Return the ratio of the coupler to the height that it spans, for the required transmission angle."""
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     return (1.0 + LIMIT_TOLERANCE) / math.cos(demanded)
 
@@ -101,8 +102,10 @@ def _build_mechanism(
     height: float,
     crank_angle: float,
 ) -> QuickReturnMechanism:
-    """Build the mechanism with its ram at a height over O4 along the given direction, O2 over O4; crank angle from
-    there."""
+    """Build the mechanism whose ram moves at ``height`` above O4, with O2 above O4.
+
+    "Above" is perpendicular to the slide's direction. ``crank_angle``, radians, is measured from that perpendicular.
+    """
     turn = math.radians(problem.direction)
     o2 = problem.o2
     up = 1j * cmath.exp(1j * turn)

@@ -99,7 +99,7 @@ _RANK_KEYS: dict[str, Callable[[QuickReturnDesign], float]] = {
 
 
 def _select_designs(problem: QuickReturnProblem, designs: list[QuickReturnDesign]) -> list[QuickReturnDesign]:
-    """Return designs in the requested order; of those that passed no type takes more than its share of the answer."""
+    """Return designs in the requested order, limited so that no type takes more than its share of the answer."""
     # Rounded up, so that the shares fill the answer.
     share = -(-problem.max_designs // len(problem.types))
     of_type: Counter[str] = Counter()

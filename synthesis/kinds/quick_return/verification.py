@@ -139,8 +139,11 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
 
 
 def _list_limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitPosition]:
-    """Return the limit positions, in the turn whose first one is nearest to the reference; angles of links from (−180°,
-    180°] on."""
+    """Return the two limit positions of the output as they are reported.
+
+    Input angles belong to the turn in which the first position is nearest to the reference. Angles of links start in
+    (−180°, 180°].
+    """
     inputs = measured.inputs - 2.0 * math.pi * round((measured.inputs[0] - reference) / (2.0 * math.pi))
     outputs = measured.outputs
     if swings:
@@ -179,7 +182,7 @@ def _check_body(
     turned = motion.angles["output"][0] - mechanism.link_angle("output")
     angles = (design.reference_body_angle or 0.0) + np.degrees(turned)
     size = max(abs(position.point - complex(*design.fixed_pivots.output)) for position in problem.positions)
-    # A body near its pole would have no size of its own.
+    # A body near its pole has almost no extent, so the output link gives the minimum size.
     size = max(size, design.links.output)
 
     def measure_miss(k: int, position: RockerPosition) -> float:
@@ -187,7 +190,7 @@ def _check_body(
         return max(float(abs(points[k] - position.point)) / size, abs(turn))
 
     first, second = problem.positions
-    # Either position may be the begin of the slow stroke.
+    # Either position may begin the slow stroke.
     worst = min(max(measure_miss(k, first), measure_miss(1 - k, second)) for k in (0, 1))
     return [check_error("reaches_targets", worst, BODY_TOLERANCE)]
 

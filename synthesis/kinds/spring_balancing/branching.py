@@ -1,9 +1,9 @@
-"""Zero-free-length springs with both ends open: the best places, proven by branching on the area of the first end.
+"""Branch and bound for zero-free-length springs with both ends open, on the area of the first end.
 
-In the program the corners of both ends are taken in pairs. That bounds the effect of such a spring, the tighter the
-smaller the area of its first end is; at one point it is exact. So the area is halved again and again, the part with
-the lowest bound first, until no part promises more than the best springs found. Those come from alternation: the best
-second end and rate for a given first end, and vice versa.
+The program takes the corners of both ends in pairs, which relaxes the problem and gives a lower bound. The bound is
+tighter for a smaller area of the first end, and exact for a single point. The area is therefore halved repeatedly, the
+part with the lowest bound first, until no part can improve on the best springs found. These come from alternation: the
+best second end and rate for a given first end, and vice versa.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MAX_NODES = 250
 """Maximum number of parts that are solved."""
 
 GAP_TOLERANCE = 1e-3
-"""Target share of the value by which the bound may be below it."""
+"""Target for the gap between value and lower bound, as a share of the value."""
 
 MAX_ALTERNATIONS = 4
 """Maximum number of alternations between the ends, one given and the other optimized."""
@@ -138,7 +138,7 @@ def _measure_spread(ends: Sequence[Complex], rates: Real) -> float:
 def _split_area(corners: Complex) -> tuple[Complex, Complex]:
     """Cut a convex area across its longest diagonal; a line in its middle."""
     apart = np.abs(corners[:, None] - corners)
-    # The two corners with the greatest distance.
+    # Find the two corners that are farthest from each other.
     one, other = np.unravel_index(int(np.argmax(apart)), apart.shape)
     middle = 0.5 * (corners[one] + corners[other])
     along = (corners[other] - corners[one]) / max(float(apart[one, other]), 1e-300)

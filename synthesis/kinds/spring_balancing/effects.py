@@ -1,4 +1,4 @@
-"""Effects of springs on the drive: all are linear once the ends are known.
+"""Effects of springs on the drive, which are linear in the parameters of springs with known ends.
 
 With the length L of a spring over the input q, L' = dL/dq, its tension is k (L − L₀) + P, and its share of the drive is
 
@@ -10,10 +10,10 @@ corners fixed in one link, and q fixed in another,
 
     |q − p|² = Σ λ_v |q − p_v|² − Σ λ_v |p − p_v|²,
 
-of which the last sum never changes. So a spring at p is a set of springs of the rates μ_v = λ_v k at the corners, and
-the best place within an area is found with the rate (potential energies of zero-free-length springs add up to one such
-spring: Herder, *Energy-free Systems*, 2001). With both ends open the corners are taken in pairs, and μ_uv ≥ 0 contains
-all such springs, and more: a bound.
+where the last sum is constant. A spring at p is therefore equivalent to a set of springs of the rates μ_v = λ_v k at
+the corners, and the best place within an area is found together with the rate (the potential energies of
+zero-free-length springs add up to that of one such spring: Herder, *Energy-free Systems*, 2001). With both ends open,
+the corners are taken in pairs. The set μ_uv ≥ 0 then contains all such springs and others, so that it gives a bound.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Setting:
     fixed : float, shape (N,)
         The drive without the requested springs.
     parts : float
-        The greatest sum of the magnitudes of all parts of that drive.
+        The maximum sum of the magnitudes of all parts of that drive.
     size : float
         Size of the linkage.
     """
@@ -116,7 +116,7 @@ class Setting:
 
     @cached_property
     def peak(self) -> float:
-        """The greatest drive without springs."""
+        """The maximum drive without springs."""
         return float(np.abs(self.fixed).max(initial=0.0))
 
     def list_corners(self, spring: SoughtSpring) -> list[Complex]:

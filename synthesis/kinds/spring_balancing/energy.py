@@ -22,7 +22,7 @@ def has_potential(block: DynamicsBlock) -> bool:
 
 
 def compute_potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real, float]:
-    """Compute the energy over positions, up to a constant, and its greatest part, for a block with a potential."""
+    """Compute the energy over positions, up to a constant, and its maximum part, for a block with a potential."""
     gravity = np.asarray(machine.gravity)
     parts: list[Real] = [np.zeros(now.smooth.shape)]
     for link, part in machine.bodies.items():

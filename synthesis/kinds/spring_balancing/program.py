@@ -28,13 +28,13 @@ MAX_ROUNDS = 12
 """Maximum number of programs solved."""
 
 GRID_TOLERANCE = 1e-5
-"""Share of the value by which the grid may exceed the program when nothing more is added."""
+"""Excess of the value on the grid over that of the program, as a share, up to which no positions are added."""
 
 SOLVER_TOLERANCE = 1e-7
 """Share of the unbalanced drive and of the dual value by which the bound is reduced: the solver's tolerance."""
 
 MIN_GAP = 3.0 * SOLVER_TOLERANCE
-"""Difference of value and bound within the solver's tolerance: near an exact balance it is no share of the value."""
+"""Absolute gap between value and bound that is within the solver's tolerance, for values near an exact balance."""
 
 EXACT_SEARCH_VALUE = 1e-4
 """Value below which an exact balance is tried."""
@@ -160,7 +160,7 @@ def _scale_program(fixed: Real, effects: Sequence[Effects], whole: float) -> _Sc
             cones.append((own, part))
         at = own.stop
     matrix, ends = np.concatenate(rows), np.concatenate(limits)
-    near = ends < MAX_LIMIT  # one that no parameter comes near to spoils the scales alone
+    near = ends < MAX_LIMIT  # limits that cannot be active would only spoil the scaling
     stiff = np.concatenate([_convert_to_rates(part, units[own]) for part, own in zip(effects, slices, strict=True)])
     return _ScaledProgram(fixed, drive * units[:, None], matrix[near], ends[near], stiff, units, cones)
 

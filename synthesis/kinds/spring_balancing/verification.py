@@ -2,7 +2,7 @@
 
 Mechanism and block are read from the answer as ``POST /v1/analyses`` would read them, including springs, while the
 programs computed the springs' share from lengths and their rates. If the balance is exact, the potential energy is
-constant, a third route without any force.
+constant, which is a third check without any forces.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ ZERO_TOLERANCE = 1e-9
 """Share of the unbalanced drive, and of its energy variation, that counts as zero."""
 
 ROUNDING_TOLERANCE = 1e-14
-"""Share of the greatest part of the energy by which a sum of the parts may be off."""
+"""Rounding error of a sum of energies, as a share of its largest part."""
 
 LIMIT_TOLERANCE = 1e-4
 """Share of a limit by which a spring may exceed it between the positions of the program."""
@@ -217,7 +217,7 @@ def _check_presence(problem: SpringBalancingProblem, springs: Sequence[FoundSpri
 def _check_limits(problem: SpringBalancingProblem, springs: Sequence[FoundSpring]) -> list[Check]:
     """Check every given limit, each by the largest share of it that a spring uses.
 
-    Free angles may have either sign; the greatest excess over their limits is reported in radians.
+    Free angles may have either sign; the maximum excess over their limits is reported in radians.
     """
     shares: dict[str, list[float]] = {}
     outside_of: list[float] = []
@@ -269,7 +269,7 @@ def _check_limits(problem: SpringBalancingProblem, springs: Sequence[FoundSpring
 
 
 def _check_places(setting: Setting, springs: Sequence[Spring]) -> list[Check]:
-    """Check the greatest distance of ends from their permitted areas, as a share of the linkage's size."""
+    """Check the maximum distance of ends from their permitted areas, as a share of the linkage's size."""
     off = [
         measure_outside(corners, end) / setting.size
         for spring in springs

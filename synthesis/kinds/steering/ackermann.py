@@ -23,7 +23,7 @@ LEAN_ANGLES = np.radians(np.linspace(0.5, 80.0, 160))
 """Angles of the arms that are evaluated first, radians."""
 
 COARSE_SAMPLE_COUNT, FINE_SAMPLE_COUNT = 65, 721
-"""Number of inner angles at which the error is evaluated: for all arms, and for one."""
+"""Number of inner wheel angles at which the error is evaluated: for many linkages at once, and for a single one."""
 
 ARM_LENGTH_COUNT = 9
 """Number of lengths of the arms that are evaluated first."""
@@ -35,8 +35,7 @@ Side = Literal["behind", "ahead"]
 
 
 def find_ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
-    """Return the best linkage with the tie rod on each allowed side, and the best ones with the shortest and longest
-    arms."""
+    """Return the best linkages for each permitted side of the tie rod: of any arms, and of the shortest and longest."""
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
     low, high = problem.arms
     found = []
@@ -66,8 +65,10 @@ def find_ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
 
 
 def find_best_lean(arm: float, ratio: float, lock: float, side: Side) -> tuple[float, float]:
-    """Find the angle of the arms with the minimum of the maximum error, and that error; radians, infinite if none
-    reaches."""
+    """Find the lean angle of the arms that minimizes the maximum error, and that error, radians.
+
+    The error is infinite if the linkage does not reach the lock at any lean angle.
+    """
     theta = np.linspace(0.0, lock, COARSE_SAMPLE_COUNT)[1:]
     worst = np.abs(_compute_errors(arm, LEAN_ANGLES[:, None], theta, ratio, side)).max(axis=1)
     worst = np.where(np.isfinite(worst), worst, np.inf)

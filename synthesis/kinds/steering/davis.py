@@ -16,7 +16,7 @@ from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.linkage.conversion import build_skeleton, build_slide, to_point
 
 SLOT_LENGTH_RATIO = 1.1
-"""Length of the slotted arms over their minimum at the lock."""
+"""Length of the slotted arms relative to the minimum that they need at the lock."""
 
 
 def build_davis_gears(problem: SteeringProblem) -> list[DavisMechanism]:

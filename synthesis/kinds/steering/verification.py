@@ -43,7 +43,7 @@ REPORTED_COUNT = 17
 """Number of positions that an answer lists, from straight to the lock."""
 
 LOCK_TOLERANCE = 1e-9
-"""Maximum miss of the lock by the inner wheel, radians; its input is found by bisection."""
+"""Maximum deviation of the inner wheel from the lock, radians; the input for the lock is found by bisection."""
 
 MAX_BISECTIONS = 60
 """Number of bisections to find a lock: 2⁻⁶⁰ of the range is below rounding."""
@@ -52,11 +52,14 @@ MAX_BAR_TRAVEL = 1e6
 """Maximum travel of the bar to lock a wheel, in pivot distances; a gear that needs more does not lock."""
 
 MAX_EXACT_ERROR = 1e-9
-"""Maximum steering error, degrees, that is rounding, for Davis's gear."""
+"""Maximum steering error of Davis's gear, degrees, which covers rounding."""
 
 
 class _SteeringMotion(NamedTuple):
-    """Wheel angles over inputs from lock to lock, and at any other; radians, counter-clockwise from straight."""
+    """Wheel angles at inputs from lock to lock, and a function for any other input.
+
+    Angles are in radians, counter-clockwise from the straight position.
+    """
 
     inputs: Real
     left: Real
@@ -68,7 +71,7 @@ class _SteeringMotion(NamedTuple):
 
 
 class _HalfTurn(NamedTuple):
-    """A turn to one side: angles of the wheels, radians, the outer one's error, degrees, and inputs."""
+    """A turn to one side: wheel angles in radians, the steering error in degrees, and the inputs."""
 
     inner: Real
     outer: Real
@@ -77,7 +80,7 @@ class _HalfTurn(NamedTuple):
 
 
 def _check_error(problem: SteeringProblem, worst: float, *, exact: bool) -> list[Check]:
-    """Check the greatest steering error, degrees; ``exact``: the mechanism steers correctly by its principle."""
+    """Check the maximum steering error, degrees; ``exact``: whether the mechanism steers correctly by its principle."""
     checks = [check_maximum("steers_correctly", worst, MAX_EXACT_ERROR, ANGLE)] if exact else []
     if problem.max_steering_error is not None:
         checks.append(check_maximum("steering_error", worst, problem.max_steering_error, ANGLE))
@@ -85,7 +88,7 @@ def _check_error(problem: SteeringProblem, worst: float, *, exact: bool) -> list
 
 
 def _compute_turning_radius(problem: SteeringProblem, outer: float) -> float:
-    """Return the radius of the outer front wheel's circle at the outer angle of the lock, radians."""
+    """Return the turning radius of the outer front wheel; ``outer`` is its angle at the lock, radians."""
     overhang = 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance)
     return problem.wheelbase / math.sin(outer) + overhang
 
@@ -260,15 +263,15 @@ def _drive_gear(problem: SteeringProblem, design: DavisMechanism) -> _SteeringMo
 
 
 def _find_right_lock(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
-    """Find the left wheel's angle, negative, at which the right one stands at −lock; None if it does not get there."""
-    # The right wheel is the inner one there and turns further; beyond its lock it may have no position at all.
+    """Find the (negative) angle of the left wheel at which the right one is at −lock; None if it does not reach it."""
+    # In a right turn the right wheel is the inner one and turns further. Beyond its lock it may have no position.
     if float(right(np.array([low]))[0]) > -lock:
         return None
     return _bisect_lock(lambda left: not float(right(np.array([left]))[0]) > -lock, 0.0, low)[0]
 
 
 def _bisect_lock(beyond: Callable[[float], bool], inside: float, outside: float) -> tuple[float, float]:
-    """Bisect between an input on either side of a lock; return the last one before and the first one beyond it."""
+    """Bisect between inputs on both sides of a lock; return the last input before the lock and the first one beyond."""
     for _ in range(MAX_BISECTIONS):
         middle = 0.5 * (inside + outside)
         inside, outside = (inside, middle) if beyond(middle) else (middle, outside)
@@ -276,6 +279,8 @@ def _bisect_lock(beyond: Callable[[float], bool], inside: float, outside: float)
 
 
 def _find_sign_changes(inner: Real, error: Real) -> list[float]:
-    """Return the inner angles at which the error changes sign, beyond the straight position: by cubic pieces between
-    samples."""
+    """Return the inner wheel angles, except 0, at which the steering error changes its sign.
+
+    The error is interpolated by cubic polynomials between the samples.
+    """
     return [float(at) for at in CubicSpline(inner, error).roots(extrapolate=False) if at > inner[1]]

@@ -1,4 +1,4 @@
-"""Straight lines: linkages whose coupler point follows one, approximately or exactly."""
+"""Straight lines: linkages whose coupler point follows a straight line, approximately or exactly."""
 
 from __future__ import annotations
 

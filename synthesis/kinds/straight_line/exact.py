@@ -38,8 +38,11 @@ class ExactLine(NamedTuple):
 
 
 def size_scott_russell(length: float, span: float) -> ExactLine | None:
-    """Size a Scott-Russell: crank = A B = A P; B slides towards O2, P runs through O2 square to the slide; span <
-    180°."""
+    """Size a Scott-Russell mechanism for a line of the given length; None if the range is not below half a turn.
+
+    The crank equals A B and A P. B slides towards O2, and P runs through O2 perpendicular to the slide. The range
+    ``span`` of the crank, radians, must be below π.
+    """
     if not span < math.pi:
         return None
     r = length / (4.0 * math.sin(0.5 * span))
@@ -48,7 +51,7 @@ def size_scott_russell(length: float, span: float) -> ExactLine | None:
 
 
 def size_peaucellier(length: float, span: float) -> ExactLine | None:
-    """Size the Peaucellier cell with arms and sides of best quality; None if the crank's range is a full turn."""
+    """Size the Peaucellier cell with the arms and sides of best quality; None if the crank's range is a full turn."""
     far = _compute_distance(length, span)
     if far is None:
         return None
@@ -113,7 +116,7 @@ def _compute_distance(length: float, span: float) -> float | None:
 
 
 def _select_best(sine: Real, lengths: Real, size: float) -> tuple[int, ...] | None:
-    """Return the index of the cell of best quality; ``size`` is the line's length in the unit of the lengths."""
+    """Return the index of the cell with the best quality; ``size`` is the line's length in the unit of ``lengths``."""
     sound = np.flatnonzero((sine > 0.0) & np.isfinite(lengths).all(axis=-1))
     if not len(sound):
         return None

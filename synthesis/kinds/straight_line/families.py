@@ -30,10 +30,10 @@ SAMPLE_COUNT = 65
 """Number of inputs at which a motion is evaluated, in Chebyshev's spacing; a band of six ripples is resolved to 1 %."""
 
 CONSTRAINT_STRIDE = 4
-"""Velocity and transmission angle, which change slowly, are constrained at every fourth sample."""
+"""Number of samples per constraint on velocity and transmission angle, which change slowly."""
 
 MIN_FORWARD_VELOCITY = 0.02
-"""Minimum velocity along the line, in units of the mean: P must not turn back."""
+"""Minimum velocity along the line, in units of the mean velocity, so that P does not turn back."""
 
 MAX_MIDDLE_OFFSET, MAX_CHORD_ANGLE = 0.6, 0.3
 """Maximum offset of the middle of the range from its place by symmetry, and of the line from the chord, radians."""
@@ -42,7 +42,7 @@ MIDDLE_OFFSETS = np.linspace(-0.9 * MAX_MIDDLE_OFFSET, 0.9 * MAX_MIDDLE_OFFSET, 
 """Offsets of the middle that are tried first, radians."""
 
 MIN_GRASHOF_MARGIN = 0.02
-"""Minimum margin of a crank of 1 in Grashof's condition: at zero it would meet a change point."""
+"""Minimum margin in Grashof's condition, in lengths of the crank; without it the linkage would have a change point."""
 
 
 class Shapes(NamedTuple):
@@ -94,7 +94,7 @@ class LineLimits(NamedTuple):
 
 
 class LineMotion(NamedTuple):
-    """Motion of P: points (m, N), and the line's direction (unit vectors), its length, the input's angles."""
+    """Motion of P: its points (m, N), the direction of the line (unit vectors) and its length, and the input angles."""
 
     p: Complex
     velocity: Complex
@@ -109,7 +109,7 @@ def compute_chebyshev_nodes(count: int) -> Real:
 
 
 def run_linkages(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[LineMotion, Shapes]:
-    """Compute the motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
+    """Compute the motion of P over the range, in the family's frame; NaN where a shape cannot be assembled."""
     k = len(family.classical)
     members = family.make(shapes[:, :k])
     # Unsymmetric families search the offset of the middle as a further unknown.

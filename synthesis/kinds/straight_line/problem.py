@@ -1,4 +1,4 @@
-"""Problems of straight lines: a linkage with a point that follows one over a part of its input's motion."""
+"""Problems of straight lines: a linkage with a point that follows a straight line over part of the input's motion."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ DEFAULT_RANGE: dict[LineMechanism, float] = {
 """Default rotation of the input, degrees: the usual range of each type."""
 
 MIN_RANGE = 1e-3
-"""Minimum rotation of the input, degrees: for less the linkage is 10⁵ times as long as the line."""
+"""Minimum rotation of the input, degrees; at this rotation the linkage is 10⁵ times as long as the line."""
 
 MAX_RANGE: dict[LineMechanism, float] = {"scott_russell": 180.0}
 """Exclusive upper limits of the range of some types; all others stay below a full turn."""

@@ -40,24 +40,26 @@ from synthesis.results.candidate_log import CandidateLog
 from synthesis.results.ranking import rank_designs
 
 DEFAULT_LINK_RATIO = 5.0
-"""Default maximum of the longest link over the shortest of a fourbar: several families grow ever straighter with more
-uneven links."""
+"""Default maximum ratio of a fourbar's longest to its shortest link. It is needed because in several families the
+straightness error decreases without end as the ratio increases."""
 
 DEFAULT_TRANSMISSION_ANGLE = 20.0
-"""Default minimum transmission angle along the line, degrees; at a toggle P runs fast and far."""
+"""Default minimum transmission angle along the line, degrees; near a toggle P moves fast and far."""
 
 DEFAULT_STRIP_WIDTH = 0.01
-"""Default width of the strip that must contain the line while its velocity is made even, as a share of its length; for
-Hoeken's linkages it is the width of Norton's family at its most even."""
+"""Default width of the strip that must contain the path while its velocity is made even, as a share of the length. For
+Hoeken's linkages it is instead the width for the linkage of Norton's family with the most even velocity."""
 
 DRAW_COUNT = 160
-"""Number of random proportions in a family's bounds, of which the best is improved next to the classical ones."""
+"""Number of random proportions within a family's bounds. The best of them is refined, in addition to the classical
+proportions."""
 
 COARSE_STRIDE, COARSE_GAIN_TOLERANCE = 4, 1e-2
-"""A first descent uses every fourth sample, and ends when a step gains less than this share."""
+"""First descent: it uses one of this many samples, and ends when a step improves the objective by less than this
+share."""
 
 DEVIATION_SHARE = 0.98
-"""Share of a required deviation that is used: between two samples P is somewhat farther off."""
+"""Share of the permitted deviation that is used at the samples, because P deviates somewhat more between them."""
 
 DESIGN_DUPLICATE_TOLERANCE = 1e-4
 """Designs whose joints agree to this share of the length are duplicates."""
@@ -66,7 +68,7 @@ MAX_VIOLATION = 1e-6
 """Maximum violation of a constraint after the search; verification decides."""
 
 ROUNDING_PERCENT = 1e-9
-"""Straightness errors and velocity variations, per cent, below this are rounding."""
+"""Straightness error or velocity variation, per cent, that counts as rounding."""
 
 EXACT_SIZERS = {"peaucellier": size_peaucellier, "hart": size_hart, "scott_russell": size_scott_russell}
 """Sizing functions of the exact types."""
@@ -75,9 +77,10 @@ Proportions = Literal["optimal", "classical", "exact"]
 
 
 class _PlacedMechanism(NamedTuple):
-    """Joints of a mechanism at the start of its range: P begins at 0 and runs to ``length`` along +x, input ccw.
+    """Joints of a mechanism at the start of its range.
 
-    ``exact`` is the mechanism of an exact line in its own frame, None for a fourbar.
+    P starts at 0 and runs to ``length`` along +x while the input turns counter-clockwise. ``exact`` is the mechanism of
+    an exact line in its own frame; it is None for a fourbar.
     """
 
     family: LineMechanism
@@ -128,7 +131,7 @@ def _rank_designs(problem: StraightLineProblem, designs: list[StraightLineDesign
 
 
 def _find_fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMechanism]:
-    """Return the best of a family of fourbars, and the one of classical proportions."""
+    """Return the best fourbar of a family, and the one with classical proportions."""
     family = FOURBARS[name]
     constraints = problem.constraints
     demands = LineLimits(
@@ -161,8 +164,10 @@ def _find_fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_P
 
 
 def _find_hoeken_shapes(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> dict[Proportions, Real]:
-    """Return the best of both free proportions, and the best of Norton's family, which sets the required
-    straightness."""
+    """Return the best shape with two free proportions, and the best one of Norton's family.
+
+    The shape of Norton's family determines the required straightness of the other.
+    """
     family = FOURBARS["hoeken"]
     norton = find_narrowest_band(
         make_objective(NORTON, demands, nodes), np.array(NORTON.classical), *NORTON.get_bounds()
@@ -195,7 +200,7 @@ def _find_hoeken_shapes(problem: StraightLineProblem, demands: LineLimits, nodes
 def _find_shapes(
     problem: StraightLineProblem, family: Family, demands: LineLimits, nodes: Real, limit: float
 ) -> dict[Proportions, Real]:
-    """Return the best of classical proportions, in its range and direction alone, and the best of all."""
+    """Return the classical proportions, with only their range and direction optimized, and the best of all shapes."""
     values, coarse = make_objective(family, demands, nodes), make_objective(family, demands, nodes[::COARSE_STRIDE])
     chosen: dict[Proportions, Real] = {}
     low, high = np.array(family.low), np.array(family.high)
@@ -210,7 +215,7 @@ def _find_shapes(
             starts.append(shapes[int(merit.argmin())])
     if not starts:
         return {}
-    # The classical proportions have a finite merit, and their own fit.
+    # The classical proportions are fitted separately if they can be assembled.
     if np.array_equal(starts[0][: len(low)], family.classical):
         fixed = family.get_bounds(fixed=family.classical)
         first = find_narrowest_band(coarse, starts[0], *fixed, half_limit=limit, arrived=COARSE_GAIN_TOLERANCE)
@@ -255,7 +260,7 @@ def _find_exact(problem: StraightLineProblem, name: LineMechanism) -> list[_Plac
 
 
 def _verify_best_side(problem: StraightLineProblem, candidate: _PlacedMechanism) -> StraightLineDesign | None:
-    """Return the design with the input turning in the required direction, or in one that satisfies the constraints."""
+    """Return the design whose input turns in the required direction, or in one that satisfies the constraints."""
     designs = []
     for rotation in ("ccw", "cw"):
         if problem.rotation in ("any", rotation):

@@ -46,7 +46,7 @@ REACH_TOLERANCE = 1e-9
 """Maximum distance of P from the ends of the line, along it, and from an exact line: a share of the length."""
 
 ROUNDING_ALLOWANCE = 64.0 * float(np.finfo(np.float64).eps)
-"""Allowance for rounding in addition, as a share of the largest coordinate: mechanisms far from the origin lose
+"""Additional allowance for rounding, as a share of the largest coordinate, because mechanisms far from the origin lose
 digits."""
 
 MIN_TOGGLE_SINE = 1e-6
@@ -56,7 +56,7 @@ LineMechanisms = FourbarMechanism | ExactLineMechanism
 
 
 class _LineMeasurement(NamedTuple):
-    """The motion along the line: extremes of the distance across it and of the velocity along it, and places."""
+    """Motion along the line: places of P, and the extremes of its distance from the line and its velocity along it."""
 
     across: tuple[float, float]
     velocity: tuple[float, float]
@@ -191,7 +191,7 @@ def _find_sense(mechanism: Mechanism, along: complex) -> int | None:
 def _drive_along_line(
     mechanism: Mechanism, inputs: Real, start: complex, along: complex, sense: int
 ) -> _LineMeasurement | None:
-    """Measure the motion of P along the line; None if the mechanism cannot be driven all along it."""
+    """Measure the motion of P along the line; None if the mechanism cannot be driven over its whole length."""
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
@@ -214,8 +214,7 @@ def _drive_along_line(
 
 
 def _measure_full_turn(mechanism: Mechanism) -> float | None:
-    """Return the minimum transmission angle over a full turn of the input, degrees; None if it does not turn
-    through."""
+    """Return the minimum transmission angle over a full turn, degrees; None if the input cannot make a full turn."""
     inputs = list_full_turn(float(mechanism.reference_input))
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
@@ -229,7 +228,7 @@ def _measure_full_turn(mechanism: Mechanism) -> float | None:
 
 
 def _list_lengths(design: LineMechanisms, mechanism: Mechanism) -> list[float]:
-    """Return the lengths of the links, with the ground's if it has two pivots."""
+    """Return the lengths of the links, including the ground if it has two pivots."""
     lengths = list_link_lengths(design)
     if isinstance(design, FourbarMechanism):
         return lengths

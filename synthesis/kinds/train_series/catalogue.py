@@ -1,7 +1,7 @@
-"""All trains that a unit can be, sorted by ratio.
+"""Catalogue of all trains that satisfy the constraints of a unit, sorted by ratio.
 
-Trains of one ratio and one number of teeth make an *entry*: the search does not distinguish them, and only returned
-series are built from the trains themselves.
+Trains with the same ratio and the same number of teeth form an *entry*. The search does not distinguish them. Only
+returned series are built from the trains themselves.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ The ratio of a series is the product of those of its units. The products of some
 product p of the others, those that are near enough lie around T/p, where T is the target, and are found by bisection.
 Errors in double precision select the series that may matter, slightly widened; these are sorted in exact arithmetic.
 
-Equal units may change places: only the series whose entries do not rise counts.
+Equal units may change places. Of the resulting series, only the one with entries in non-increasing order counts.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ BLOCK_SIZE = 1 << 18
 """Number of products that are looked up at once."""
 
 WINDOW_MARGIN = 1e-13
-"""Error by which a window is widened: the products of a few floats are off by some 1e-15 of themselves."""
+"""Error by which a window is widened, since products of a few floats have relative errors of some 1e-15."""
 
 WINDOW_GROWTH = 10.0
 """Growth factor of the window of errors from one step of the Pareto search to the next."""
@@ -74,7 +74,7 @@ class SeriesSearch:
     catalogues : sequence of Catalogue
     alike : sequence of int
         For every unit the first unit that is equal to it.
-    target : Target
+    target : RatioTarget
         Magnitude of the requested ratio.
     sign : int
         Its direction.

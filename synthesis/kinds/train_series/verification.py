@@ -1,8 +1,8 @@
 """Verification of a finished series, from its tooth numbers alone.
 
-All units form one list of meshes: the output of one is the body of the next one's input, fixed members are the ground.
-The speed equations of this one train give the ratio in exact fractions. The constraints of each unit are measured by
-its own kind, for the ratio that the unit has.
+All units are joined into one list of meshes. The output of each unit is the same body as the input of the next one, and
+fixed members are the ground. The speed equations of this train give the ratio in exact fractions. The kind of each unit
+checks the unit's constraints, for the ratio that the unit has.
 """
 
 from __future__ import annotations

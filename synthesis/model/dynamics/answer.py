@@ -1,4 +1,4 @@
-"""Reported forces of a linkage in motion: arrays over the positions, with null where a force is unknown."""
+"""Models of the forces of a linkage in motion: arrays over the positions, with null where a force is unknown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Requested masses of a linkage's links, by mass properties or by shape. Data only."""
+"""Models of the masses of a linkage's links, given by mass properties or by shape."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Place = Annotated[
     Annotated[Point, Tag("<point>")] | Annotated[PolarPoint, Tag("<polar>")],
     Discriminator(lambda stated: "<polar>" if isinstance(stated, dict | PolarPoint) else "<point>"),
 ]
-"""A point of a link in the reference configuration: in the plane's coordinates, or from the link's first joint."""
+"""A point of a link in the reference configuration, in coordinates of the plane or relative to the link's joints."""
 
 
 class Part(Statement):
@@ -137,12 +137,12 @@ class LinkShape(Shape):
         return self
 
     def fill_sizes(self, width: float | None, thickness: float | None) -> Shape:
-        """Return the shape with missing sizes taken from a layout (length units), if there is one.
+        """Return the shape, with missing sizes taken from a layout (length units) if there is one.
 
         Raises
         ------
         pydantic.ValidationError
-            If the result is no valid shape.
+            If the result is not a valid shape.
         """
         stated = {name: value for name, value in self.model_dump(exclude_unset=True).items() if value is not None}
         if self.polygon is None and not self.parts and width is not None:

@@ -1,6 +1,6 @@
-"""Requested loads on a linkage: forces at points of links and at joints, torques on links. Data only.
+"""Models of the loads on a linkage: forces at points of links and at joints, and torques on links.
 
-A load has one of four forms: constant, a table over the input, against the motion, or gas pressure.
+A load has one of four forms: constant, given by a table over the input, against the motion, or gas pressure.
 """
 
 from __future__ import annotations
@@ -41,11 +41,12 @@ PairRows = Annotated[
 
 
 CLOSURE_TOLERANCE = 1e-9
-"""Maximum difference between equal first and last rows of a table, as a share of its largest value."""
+"""Maximum difference with which the first and the last row of a periodic table count as equal, as a share of the
+largest value in the table."""
 
 
 def find_period_error(rows: Sequence[tuple[float, ...]], period: float) -> str | None:
-    """Return an error message for a periodic table that exceeds its period or has contradictory ends, else None."""
+    """Return an error message if a periodic table exceeds its period or has contradictory ends; otherwise None."""
     first, last = rows[0], rows[-1]
     span = last[0] - first[0]
     if span > period:

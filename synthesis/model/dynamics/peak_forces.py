@@ -1,4 +1,4 @@
-"""Reported forces of a finished linkage: the peaks that are compared with its force limits."""
+"""Models of the forces of a finished linkage: the peaks that are compared with force limits."""
 
 from __future__ import annotations
 

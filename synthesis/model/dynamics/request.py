@@ -1,4 +1,4 @@
-"""Block ``dynamics`` of a statement: masses, loads, friction and speed (docs/mechanisms/dynamics.md). Data only."""
+"""Models of the block ``dynamics`` of a statement: masses, loads, friction and speed (docs/mechanisms/dynamics.md)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from synthesis.model.problem import Degrees, NonNegative, Number, Point, Positiv
 LengthUnit = Literal["mm", "cm", "m", "in"]
 
 METRES_PER_UNIT: dict[str, float] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
-"""Length units in metres."""
+"""Metres per length unit."""
 
 
 class Gravity(Statement):
@@ -59,7 +59,7 @@ class FrictionSpec(Statement):
 
 
 MIN_COEFFICIENT = 1e-6
-"""Minimum coefficient of fluctuation: smaller ones are unrealistic and would be lost in the rounding of the speed."""
+"""Minimum coefficient of fluctuation: smaller ones are unrealistic, and would vanish in the rounding of the speed."""
 
 
 class FlywheelSpec(Statement):
@@ -79,7 +79,7 @@ ForceQuantity = Literal["drive_torque", "joint_force", "shaking_force", "shaking
 Reported = Literal["joint_forces", "drive", "shaking", "flywheel", "joint_force_index", "harmonics"]
 
 ALWAYS_REPORTED: tuple[Reported, ...] = ("joint_forces", "drive", "shaking")
-"""Results that are reported by default."""
+"""Results that are reported if the request does not list any."""
 
 
 class LoadedLinkage(Statement):
@@ -110,7 +110,7 @@ class LoadedLinkage(Statement):
         return [stated.shape for stated in self.bodies.values() if stated.shape is not None]
 
     def scale(self, unit: LengthUnit) -> float:
-        """Return the factor from the length unit to the length unit of forces: metres for SI, otherwise 1."""
+        """Return the factor from the length unit to that of the forces: metres per length unit for SI, otherwise 1."""
         return METRES_PER_UNIT[unit] if self.units == "si" else 1.0
 
 
@@ -167,7 +167,7 @@ class DesignDynamics(LoadedLinkage):
         return self._plate
 
     def fill_from_layout(self, layout: LayoutSizes | None) -> str | None:
-        """Take missing sizes of the links from a layout; return a message if one is still missing, otherwise None."""
+        """Take missing sizes of the links from a layout; return an error message if one is still missing, else None."""
         if self.links is None:
             return None
         width, thickness = (None, None) if layout is None else (layout.link_width, layout.thickness)

@@ -1,4 +1,4 @@
-"""Requested springs and dampers of a linkage. Data only."""
+"""Models of the springs and dampers of a linkage."""
 
 from __future__ import annotations
 

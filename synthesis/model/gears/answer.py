@@ -20,10 +20,10 @@ from synthesis.model.gears.mesh_limits import choose_cutter_teeth
 from synthesis.model.json_object import JsonObject
 
 LIMIT_TOLERANCE = 1e-9
-"""Tolerance of a limit of teeth, as a share of the module or the centre distance: rounding of teeth exactly on it."""
+"""Tolerance of a geometric limit of teeth, as a share of the module or centre distance, for teeth exactly at it."""
 
 SHOWN_DECIMALS = 10
-"""Decimals of an angle that was given in degrees and converted to radians and back."""
+"""Decimals to which an angle is rounded that was given in degrees and converted to radians and back."""
 
 
 class Ratio(Answer):
@@ -136,10 +136,10 @@ class MeshGeometry(Answer):
 
 
 def apply_tool_contact(mesh: Mesh, ring: ShapedRing | None = None, helix_angle: float = 0.0) -> Contact:
-    """Return a mesh with the involutes left by its tools: a rack for external gears, even undercut, a cutter for a
-    ring.
+    """Return the contact of a mesh on the involutes that its cutting tools leave.
 
-    ``helix_angle``: helix angle of helical gears, radians.
+    An external gear, which may be undercut, is cut by a rack. A ring is shaped by a cutter, as described by ``ring``.
+    ``helix_angle`` is that of helical gears, radians.
     """
     ends = find_involute_start(mesh.gear, helix_angle) if ring is None else ring.form
     return Contact(mesh, (find_involute_start(mesh.pinion, helix_angle), ends))
@@ -163,7 +163,7 @@ def find_undercut(mesh: Mesh, helix: Helix | None = None) -> tuple[bool, bool]:
 
 
 def is_fillet_reached(mesh: Mesh) -> bool:
-    """Return whether contact extends below an involute, as cut by a rack, or for a ring by the default cutter."""
+    """Return whether contact extends below an involute, as cut by a rack or, for a ring, by the default cutter."""
     ring = shape_ring(mesh) if mesh.gear.internal else None
     return min(apply_tool_contact(mesh, ring).margins) < -LIMIT_TOLERANCE * mesh.centre_distance
 
@@ -176,14 +176,14 @@ def shape_ring(mesh: Mesh) -> ShapedRing:
 def compute_rack_depth(pressure_angle: float, helix_angle: float = 0.0) -> float:
     """Compute the depth of the straight flank of the full-depth rack below its reference line, in modules.
 
-    Angles in radians. For helical teeth ``pressure_angle`` and the rack are those of the normal plane, while the
-    modules are those of the plane of rotation.
+    Angles are in radians. For helical teeth, ``pressure_angle`` and the rack are those of the normal plane, while the
+    module is that of the plane of rotation.
     """
     return compute_straight_depth(pressure_angle, FULL_DEPTH_DEDENDUM) * math.cos(helix_angle)
 
 
 def describe_fitted_mesh(stage: int, driver: int, driven: int, mesh: Mesh, helix: Helix | None = None) -> MeshGeometry:
-    """Describe a mesh with fitted teeth; contact in a fillet counts as interference, too."""
+    """Describe a mesh with fitted teeth; contact in a fillet also counts as interference."""
     contact = apply_tool_contact(mesh, helix_angle=0.0 if helix is None else helix.helix_angle)
     slack = LIMIT_TOLERANCE * mesh.centre_distance
     one, two = (mesh.pinion, mesh.gear) if driver <= driven else (mesh.gear, mesh.pinion)
@@ -213,14 +213,14 @@ def _compute_tip_thickness(gear: Gear) -> float:
 def describe_meshes(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeometry]:
     """Describe every mesh of a train, with a suggested shift for meshes that interfere or are undercut.
 
-    Shifted stages, and all stages if teeth are ``fitted``, are described in more detail and get no suggestion.
+    Shifted stages, and all stages if the teeth are ``fitted``, are described in more detail and without a suggestion.
     """
     found = []
     for number, (stage, meshes) in enumerate(zip(train.stages, train.meshes, strict=True), 1):
         if stage.kind == "worm":
             found.append(_describe_worm_mesh(number, stage, train.pressure_angle))
             continue
-        # Rings and bevel gears are never fitted: their pitch circles and cones determine their positions.
+        # Rings and bevel gears are never fitted, because their pitch circles or cones determine their positions.
         shifted = stage.kind not in ("internal", "bevel") and (fitted or stage.shifts != (0.0, 0.0))
         for (driver, driven), mesh in zip(itertools.pairwise(stage.gears), meshes, strict=True):
             if shifted:
@@ -233,7 +233,7 @@ def describe_meshes(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeom
 
 
 def _describe_standard_mesh(stage: int, driver: int, driven: int, mesh: Mesh, shrunk: float) -> MeshGeometry:
-    """Describe a mesh without shift; ``shrunk`` is the normal module over the module of the plane of rotation."""
+    """Describe a mesh without profile shift; ``shrunk`` is the normal module over that of the plane of rotation."""
     return MeshGeometry(
         stage=stage,
         driver=driver,
@@ -247,7 +247,7 @@ def _describe_standard_mesh(stage: int, driver: int, driven: int, mesh: Mesh, sh
 
 
 def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> JsonObject:
-    """Return the fields of the mesh that differ from, or are added to, those of external spur gears."""
+    """Return the fields of a mesh that differ from those of external spur gears, or that external spur gears lack."""
     if stage.kind == "external":
         return {}
     block: JsonObject = {"type": stage.kind}
@@ -283,7 +283,7 @@ def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -
 
 
 def _describe_worm_mesh(number: int, stage: TrainStage, pressure_angle: float) -> MeshGeometry:
-    """Describe a worm and its gear in the middle plane, where the worm is the very rack that cuts the gear."""
+    """Describe a worm and its gear in the middle plane, where the worm is identical to the rack that cuts the gear."""
     worm = stage.worm(pressure_angle)
     pair, undercut = worm.dimensions, worm.gear.is_undercut
     return MeshGeometry(

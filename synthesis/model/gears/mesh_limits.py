@@ -1,6 +1,8 @@
 """Interference and contact limits of gear pairs, vectorised over tooth numbers; lengths are in half modules.
 
-Teeth are standard full-depth teeth at their standard distance. The line of action is tangent to both base circles, of
+All gears have standard full-depth teeth and run at their standard distance.
+
+The line of action is tangent to both base circles, of
 radius z cos φ. An external tip circle of radius z + 2 must stay inside √(z² cos² φ + (z₁ + z₂)² sin² φ). A ring's teeth
 are shortened so that they do not dig into the planet's flank: the addendum is the smaller of 1 and
 (R − √(R² cos² φ + (R − P)² sin² φ))/2, so that the contact ratio has to be checked (Norton, Sec. 9.2–9.5; Colbourne
@@ -20,13 +22,13 @@ from kinematics.gear.flanks import CUTTER_ADDENDUM
 from kinematics.gear.profile import find_full_depth_starts
 
 ADDENDUM_STEP = 1e-6
-"""Step of shortened addenda: rounded to six decimals they still do not interfere."""
+"""Step to which shortened addenda are rounded down, modules: with six decimals they still do not interfere."""
 
 DEFAULT_CUTTER_TEETH = 20
 """Default number of teeth of the cutter that shapes a ring; half of the ring's teeth if that is less."""
 
 ROUNDING_TOLERANCE = 1e-12
-"""Relative tolerance of a tip at its limit."""
+"""Relative tolerance of a tip circle at its limit, for rounding."""
 
 
 def choose_cutter_teeth(ring: Real | float) -> Real:
@@ -35,7 +37,7 @@ def choose_cutter_teeth(ring: Real | float) -> Real:
 
 
 def has_no_external_interference(pinion: Real, gear: Real, angle: float) -> Mask:
-    """Return whether two external gears mesh without interference."""
+    """Return whether external gears with these tooth numbers mesh without interference; ``angle`` is in radians."""
     squared, span = np.sin(angle) ** 2, (pinion + gear) ** 2
     limits = [np.sqrt(z * z * (1.0 - squared) + span * squared) for z in (pinion, gear)]
     return np.asarray(
@@ -53,7 +55,7 @@ def compute_external_contact_ratio(pinion: Real, gear: Real, angle: float) -> Re
 
 
 def has_clear_external_fillets(pinion: Real, gear: Real, angle: float) -> Mask:
-    """Return whether no tip of two external gears reaches below the involute left by a rack on the other."""
+    """Return whether neither tip of two external gears reaches below the involute that a rack leaves on the other."""
     clear = np.ones(np.broadcast(pinion, gear).shape, np.bool_)
     for own, mate in ((pinion, gear), (gear, pinion)):
         reached = (pinion + gear) * np.sin(angle) - np.sqrt((mate + 2.0) ** 2 - (mate * np.cos(angle)) ** 2)
@@ -62,7 +64,7 @@ def has_clear_external_fillets(pinion: Real, gear: Real, angle: float) -> Mask:
 
 
 def has_clear_ring_fillet(planet: Real, ring: Real, angle: float) -> Mask:
-    """Return whether a planet's tip stays within the involute left on a ring by the sharp-cornered default cutter."""
+    """Return whether a planet's tip stays within the involute that the sharp-edged default cutter leaves on a ring."""
     cutter = choose_cutter_teeth(ring)
     cosine, sine = np.cos(angle), np.sin(angle)
     reached = (ring - planet) * sine + np.sqrt((planet + 2.0) ** 2 - (planet * cosine) ** 2)
@@ -71,23 +73,27 @@ def has_clear_ring_fillet(planet: Real, ring: Real, angle: float) -> Mask:
 
 
 def _compute_rack_form(teeth: Real, angle: float) -> Real:
-    """Compute the start of the involute left by a rack, on the line of action from the tangent point of the base
-    circle.
-    """
-    # The start is expensive to compute: once per distinct tooth number.
+    """Compute the start of the involute that a rack leaves, on the line of action from the tangent point."""
+    # The start is expensive to compute, so compute it once per distinct tooth number.
     numbers, places = np.unique(teeth, return_inverse=True)
     return np.asarray(2.0 * find_full_depth_starts(numbers, angle)[places].reshape(teeth.shape))
 
 
 def compute_ring_addendum(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Real:
-    """Compute the maximum addendum of a ring (modules, at most 1) that does not dig into its planet or the fillet."""
+    """Compute the maximum addendum of a ring (modules, at most 1) that does not dig into its planet.
+
+    With ``fillets`` the ring's tips do not reach into the planet's fillets either.
+    """
     return _compute_addendum_reaching(
         ring, (ring - planet) * np.sin(angle) + (_compute_rack_form(planet, angle) if fillets else 0.0), angle
     )
 
 
 def compute_untrimmed_addendum(ring: Real, angle: float) -> Real:
-    """Compute the addendum of a ring (modules, at most 1) that ends where the default cutter's involute begins."""
+    """Compute the maximum addendum of a ring (modules, at most 1) whose tips the default cutter does not trim.
+
+    The tips end where the involute of the cutter begins.
+    """
     return _compute_addendum_reaching(ring, (ring - choose_cutter_teeth(ring)) * np.sin(angle), angle)
 
 
@@ -107,9 +113,9 @@ def compute_internal_contact_ratio(planet: Real, ring: Real, addendum: Real, ang
 
 
 def has_clear_tips(planet: Real, ring: Real, addendum: Real, angle: float) -> Mask:
-    """Return whether the tips of a planet and a ring with this addendum (modules) pass each other.
+    """Return whether the tips of a planet and of a ring with this addendum (modules) pass each other.
 
-    Tips interfere only if the ring is hardly larger than its planet.
+    Tips collide only if the ring is hardly larger than its planet.
     """
     return _has_passing_tips(planet, ring, planet + 2.0, ring - 2.0 * addendum, angle)
 
@@ -117,7 +123,7 @@ def has_clear_tips(planet: Real, ring: Real, addendum: Real, angle: float) -> Ma
 def is_ring_untrimmed(ring: Real, addendum: Real, angle: float) -> Mask:
     """Return whether the default cutter leaves the tips of a ring with this addendum (modules) untrimmed.
 
-    The cutter's tips must pass the ring's tips off the line of action; on that line the ring's tips must not reach
+    Off the line of action, the cutter's tips must pass the ring's tips. On that line, the ring's tips must not reach
     beyond the cutter's involutes.
     """
     cutter, inner = choose_cutter_teeth(ring), ring - 2.0 * addendum
@@ -127,7 +133,10 @@ def is_ring_untrimmed(ring: Real, addendum: Real, angle: float) -> Mask:
 
 
 def _has_passing_tips(planet: Real, ring: Real, tip: Real, inner: Real, angle: float) -> Mask:
-    """Return whether tips on circle ``tip`` pass a ring's tips on circle ``inner``, at the standard distance."""
+    """Return whether tips on a circle of radius ``tip`` pass a ring's tips on a circle of radius ``inner``.
+
+    The gears run at their standard distance.
+    """
     apart, base, ring_base = ring - planet, planet * np.cos(angle), ring * np.cos(angle)
     inside = inner >= apart + tip
     meets = (inner > np.abs(apart - tip)) & (inner >= ring_base)

@@ -1,8 +1,8 @@
 """Loads of the meshes of a planetary train: load sharing of the planets, and reversed bending of teeth.
 
-Stresses are computed as for any pair (:mod:`synthesis.model.gears.strength`). Each mesh exists once per planet. Every
-copy carries an equal share of the torque, multiplied by the load sharing factor. Relative to the carrier it is an
-ordinary pair that transmits its rolling power at its pitch-line velocity there.
+Stresses are computed as for any pair (:mod:`synthesis.model.gears.strength`). Each mesh exists once per planet, and the
+most loaded copy carries an equal share of the torque multiplied by the load sharing factor. Relative to the carrier,
+the mesh is an ordinary pair that transmits its rolling power.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ MAX_SHARING_FACTOR = 1.4
 """Load sharing factor of six and more planets, by the same rules."""
 
 MIN_LOAD_SHARE = 1e-9
-"""Share of the largest mesh torque below which a torque is rounding."""
+"""Share of the largest mesh torque up to which a torque counts as 0, because it is rounding."""
 
 PAIRS_NOTE = (
     "Pairs are for the first and the second gear of every mesh, in the order of the arrangement: sun before planet, "
@@ -50,7 +50,7 @@ class PlanetSharing(Statement):
     )
 
     def get_sharing_factor(self, planets: int) -> float:
-        """Return the load sharing factor for a number of planets."""
+        """Return the given load sharing factor, or the default for a number of planets."""
         if self.load_sharing is not None:
             return self.load_sharing
         return 1.0 if planets <= MAX_EQUAL_PLANETS else SHARING_FACTORS.get(planets, MAX_SHARING_FACTOR)
@@ -71,9 +71,14 @@ class PlanetPower(PlanetSharing, CarriedPower):
 
 
 class MeshLoad(NamedTuple):
-    """Load of a mesh with all its copies: torques on both gears, and speed of the first gear relative to the carrier.
+    """Load of a mesh with all its copies.
 
-    Torques are signed, seen from one side of the train.
+    Attributes
+    ----------
+    torques : pair of float
+        Torques on both gears, N·m, with signs as seen from one side of the train.
+    speed : float
+        Speed of the first gear relative to the carrier, rad/s.
     """
 
     torques: tuple[float, float]
@@ -81,7 +86,7 @@ class MeshLoad(NamedTuple):
 
 
 def build_planetary_contact(gears: tuple[Gear, Gear]) -> Contact:
-    """Build a mesh for the strength formulas, which do not need the ends of the involutes."""
+    """Build a contact for the strength formulas, which do not need the ends of the involutes."""
     return Contact(Mesh(*gears), (-math.inf, math.inf if gears[1].internal else -math.inf))
 
 
@@ -91,9 +96,9 @@ def convert_to_millimetres(gear: Gear, unit: float) -> Gear:
 
 
 def mark_bent_both_ways(arrangement: Arrangement, loads: Sequence[MeshLoad]) -> list[tuple[bool, bool]]:
-    """Return which gears of each mesh are bent in both directions: those loaded by torques of both signs.
+    """Return for each mesh whether its gears are bent in both directions, because torques of both signs load them.
 
-    The sign of a torque determines the loaded flank. Both flanks of a simple planet are loaded; a gear of a stepped
+    The sign of a torque determines the loaded flank. Both flanks of a simple planet are loaded. A gear of a stepped
     planet with a single mesh is always loaded on the same flank.
     """
     least = MIN_LOAD_SHARE * max((abs(torque) for load in loads for torque in load.torques), default=0.0)
@@ -110,15 +115,17 @@ def compute_powers(loads: Sequence[MeshLoad], teeth: Sequence[tuple[int, int]], 
 
     Parameters
     ----------
+    loads : sequence of MeshLoad
+        Loads of the meshes.
     teeth : sequence of pairs
-        Teeth of each mesh.
+        Tooth numbers of the meshes.
     share : float
         Load sharing factor over the number of planets.
     """
     least = MIN_LOAD_SHARE * max((abs(torque) for load in loads for torque in load.torques), default=0.0)
     found = []
     for (first, second), load in zip(teeth, loads, strict=True):
-        # With losses the gear that drives has the greater force.
+        # With losses, the force is larger on the driving gear.
         force = max(abs(load.torques[0]) / first, abs(load.torques[1]) / second)
         loaded = max(abs(torque) for torque in load.torques) > least
         found.append(share * force * first * abs(load.speed) if loaded else 0.0)
@@ -148,10 +155,16 @@ def describe_strengths(
 
     Parameters
     ----------
+    arrangement : Arrangement
+        The gears and their meshes.
     gears : mapping
         The gears by name, in the problem's unit of length.
     loads : sequence of MeshLoad
-        Loads of each mesh, N·m and rad/s.
+        Loads of the meshes.
+    planets : int
+        Number of planets.
+    method : PlanetStrength or PlanetPower
+        Strength method, factors, allowable stresses and load sharing.
     faces : sequence of float or None, or None
         Face widths of the planes; None for the minimum that each mesh needs.
     unit : float

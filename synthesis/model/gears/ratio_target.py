@@ -27,26 +27,27 @@ from fractions import Fraction
 from functools import cache, lru_cache
 
 MAX_TEXT_LENGTH = 120
-"""Maximum number of characters of a target; longer texts are attacks."""
+"""Maximum number of characters of a target; longer texts are errors or attacks."""
 
 MIN_RATIO, MAX_RATIO = Fraction(1, 10**9), Fraction(10**9)
-"""Minimum and maximum ratio, the same limits as for all numbers; ratios beyond are typing errors."""
+"""Minimum and maximum ratio. The maximum is that of all numbers; ratios outside are typing errors."""
 
 MAX_BITS = 1 << 14
-"""Maximum number of bits of an enclosure; different numbers of about a hundred digits differ much earlier."""
+"""Maximum number of bits of an enclosure. Different numbers with about a hundred digits are distinguished much earlier.
+"""
 
 CLEAR_DIFFERENCE = 1e-14
-"""Relative difference above which two floats have the same order as the exact numbers: about forty rounding errors."""
+"""Relative difference of two floats, about forty rounding errors, above which the exact numbers have the same order."""
 
 _SIZE = 64
-"""Bits of the first enclosure."""
+"""Number of bits of the first enclosure."""
 
 _NUMBER = r"\d+(?:\.\d+)?|\.\d+"
 _TOKEN = re.compile(rf"\s*(?:({_NUMBER})|(pi|e)(?![a-z])|sqrt\(\s*({_NUMBER})\s*\)|([*/]))", re.ASCII)
 
 
 class TargetSyntaxError(ValueError):
-    """Raised for a text that is no target; the message describes the expected syntax."""
+    """Raised for a text that is not a target; the message describes the expected syntax."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class RatioTarget:
 
     @property
     def rational(self) -> Fraction | None:
-        """The exact number if it is rational, otherwise None."""
+        """Exact value if the number is rational, otherwise None."""
         return self.factor if self.pi == self.e == 0 and self.radicand == 1 else None
 
     def enclose(self, bits: int) -> tuple[Fraction, Fraction]:
@@ -107,7 +108,7 @@ class RatioTarget:
         return over and (tolerance >= 1 or self.compare(ratio / (1 - tolerance)) <= 0)
 
     def compute_relative_error(self, ratio: Fraction) -> float:
-        """Compute ratio / target − 1, correct to all digits of a float."""
+        """Compute the relative error, ratio / target − 1, correct to all digits of a float."""
         if self.rational is not None:
             return float(ratio / self.rational - 1)
         bits = 4 * _SIZE
@@ -174,7 +175,7 @@ def parse_target(text: float | str) -> tuple[int, RatioTarget]:
 
 
 def parse_decimal(number: float) -> Fraction:
-    """Return a JSON number as the decimal that was written: the shortest that denotes the same float."""
+    """Return a JSON number as the decimal that was written: the shortest decimal that denotes the same float."""
     return Fraction(repr(number))
 
 
@@ -229,8 +230,8 @@ def _simplify_root(radicand: Fraction) -> tuple[Fraction, Fraction]:
 
 @cache
 def _enclose_pi(bits: int) -> tuple[int, int]:
-    """Return integer bounds of π 2^bits, by Machin's π = 16 atan(1/5) − 4 atan(1/239)."""
-    # Guard bits absorb the truncation error of each term of the series.
+    """Return integer bounds of π 2^bits, by Machin's formula π = 16 atan(1/5) − 4 atan(1/239)."""
+    # Guard bits absorb the truncation errors of the terms of the series.
     guard = 32
     unit = 1 << (bits + guard)
     value = 16 * _compute_arctan(5, unit) - 4 * _compute_arctan(239, unit)
@@ -248,7 +249,7 @@ def _compute_arctan(n: int, unit: int) -> int:
 
 @cache
 def _enclose_e(bits: int) -> tuple[int, int]:
-    """Return integer bounds of e 2^bits, by the series of e."""
+    """Return integer bounds of e 2^bits, by the series Σ 1/k!."""
     guard = 32
     term, total, k = 1 << (bits + guard), 0, 0
     while term:

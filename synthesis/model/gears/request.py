@@ -14,7 +14,8 @@ MIN_TEETH = 3
 """Minimum number of teeth: full-depth gears with fewer have no root circle."""
 
 MAX_TEETH = 2000
-"""Maximum number of teeth; more are a typing error. Its fourth power is exact in every number type of the searches."""
+"""Maximum number of teeth; larger numbers are typing errors. Its fourth power is exact in every number type of the
+searches."""
 
 MAX_TOOTH_SUM = 400
 """Maximum sum of teeth of a pair of gears in a gearbox."""
@@ -33,7 +34,7 @@ ExactRatio = Annotated[
 """A number, or a text in the grammar of :mod:`synthesis.model.gears.ratio_target`."""
 
 Pitch = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
-"""Module or diametral pitch. Larger ones would lead to lengths outside the permitted range; finer ones are typing
+"""Module or diametral pitch. Larger values would lead to lengths outside the permitted range; smaller ones are typing
 errors.
 """
 
@@ -48,11 +49,11 @@ PressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=10.0, le=30.0)]
 """Degrees."""
 
 CommonPressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=14.0, le=30.0)]
-"""Pressure angle of planetary trains and gearboxes, degrees; their bounds on tooth numbers hold from 14° on."""
+"""Pressure angle of planetary trains and gearboxes, degrees. Their bounds on tooth numbers are valid from 14° on."""
 
 
 ShiftCoefficient = Annotated[float, Field(strict=True, ge=-2.0, le=2.0)]
-"""Profile shift in modules, positive outwards, on rings, too."""
+"""Profile shift in modules, positive outwards, also for rings."""
 
 ContactRatio = Annotated[float, Field(strict=True, ge=1.0, le=2.5)]
 """Minimum mean number of pairs of teeth in contact."""
@@ -87,7 +88,7 @@ class ToothRange(Statement):
 
 
 def find_tooth_errors(teeth: ToothRange, tooth_sum: ToothRange) -> list[Contradiction]:
-    """Return reversed limits on the teeth of a gearbox's gears and pairs."""
+    """Return a contradiction for each pair of limits on the teeth of a gearbox whose minimum exceeds the maximum."""
     return [
         Contradiction(f"/{name}/max", "must not be less than min")
         for name, limits in (("teeth", teeth), ("tooth_sum", tooth_sum))

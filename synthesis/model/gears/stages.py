@@ -1,4 +1,4 @@
-"""Types of stages of a gear train, as requested by a client and as used by the analysis core."""
+"""Types of stages of a gear train, and their conversion to the analysis core."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ DEFAULT_VALUES: JsonObject = {
     "hand": "right",
     "friction": USUAL_FRICTION,
 }
-"""Default values of those fields."""
+"""Default values of these fields, for the types of stages that have them."""
 
 HelixAngle = Annotated[float, ANGLE, Field(strict=True, ge=-45.0, le=45.0)]
 
@@ -88,7 +88,7 @@ class StageType(Statement):
 
     @classmethod
     def list_types_with(cls, name: str) -> tuple[StageKind, ...]:
-        """Return the types of stages that have a field."""
+        """Return the types of stages that have the field ``name``."""
         return FIELD_STAGE_TYPES[name]
 
     def get_or_default(self, name: str) -> Any:
@@ -97,7 +97,7 @@ class StageType(Statement):
         return DEFAULT_VALUES.get(name) if stated is None and self.type in self.list_types_with(name) else stated
 
     def has_meeting_cones(self, driver: int, driven: int) -> bool:
-        """Return whether bevel gears with these numbers of teeth have proper pitch cones, less than flat."""
+        """Return whether bevel gears with these tooth numbers have pitch cones with half angles below 90°."""
         try:
             BevelCones(driver, driven, 1.0, math.radians(self.get_or_default("shaft_angle")))
         except DimensionError as error:
@@ -105,7 +105,7 @@ class StageType(Statement):
         return True
 
     def find_type_errors(self) -> list[tuple[str, str]]:
-        """Return fields of other types and missing fields, by their path below the stage."""
+        """Return errors of fields that the type lacks or that are missing, as pairs (path in the stage, detail)."""
         faults = [
             (f"/{name}", f"stages of type {self.type} have no such field; leave it out")
             for name in FIELD_STAGE_TYPES
@@ -130,9 +130,11 @@ def build_train_stage(stage: Any, pressure_angle: float, idlers: tuple[int, ...]
     Parameters
     ----------
     stage : object
-        With teeth, module and the fields of all types; None for fields that are left out.
+        A model with teeth, module and the fields of all types; fields that are left out are None.
     pressure_angle : float
-        Radians.
+        Pressure angle, radians.
+    idlers : tuple of int
+        Tooth numbers of the idlers of the stage, in order.
     """
     kind: StageKind = stage.type or "external"
     shifts = (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven)
@@ -165,7 +167,7 @@ def _choose_value(given: float | None, usual: float) -> float:
 
 
 def compute_ring_addenda(driver: int, driven: int, pressure_angle: float) -> tuple[float, float]:
-    """Return the addenda of driver and driven gear of an internal stage, modules; the ring's is shortened."""
+    """Return the addenda of driver and driven gear of an internal stage, modules; the ring's addendum is shortened."""
     pinion, ring = (np.array([float(teeth)]) for teeth in sorted((driver, driven)))
     short = round(
         float(mesh_limits.compute_ring_addendum(pinion, ring, pressure_angle, fillets=True)[0]), RATIO_DECIMALS

@@ -1,7 +1,7 @@
 """Tooth stresses of a pair of gears under load: request, answer, and the face width that carries the power.
 
-This is a first estimate by the equations of Lewis and AGMA (:mod:`kinematics.gear.strength`), with factors given by the
-client or by textbook formulas. It ignores bearings, lubrication, wear and life.
+This is a first estimate by the equations of Lewis and AGMA (:mod:`kinematics.gear.strength`). Their factors are given
+by the client or computed by textbook formulas. Bearings, lubrication, wear and life are ignored.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ RATED_STAGE_TYPES = ("external", "internal", "helical")
 """Types of stages whose strength is estimated."""
 
 REVERSED_BENDING_FACTOR = 0.7
-"""Share of the allowable bending stress for teeth that are bent in both directions in every turn, such as an idler's,
-by AGMA (Shigley, Sec. 14-4)."""
+"""Share of the allowable bending stress that AGMA permits for teeth that are bent in both directions in every turn,
+such as those of an idler (Shigley, Sec. 14-4)."""
 
 EQUALITY_TOLERANCE = 1e-12
-"""Relative deficit of power that counts as rounding."""
+"""Relative deficit of power that is ignored as rounding."""
 
 WIDTH_COUNT = 400
-"""Number of face widths, in equal ratios, that are tried to find the minimum that carries the load."""
+"""Number of steps of the face width, in equal ratios, in the search for the minimum width that carries the load."""
 
 
 class StrengthFactors(Statement):
@@ -104,7 +104,7 @@ class StrengthMethod(Statement):
     )
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """Return errors that no single field shows, by the path below this statement."""
+        """Return errors that the validation of single fields cannot find, by the path below this statement."""
         if self.method != "lewis":
             return []
         faults = []
@@ -119,14 +119,14 @@ class StrengthMethod(Statement):
         ]
 
     def find_ring_errors(self) -> list[tuple[str, str]]:
-        """Return errors for a pair whose second gear is a ring: no formula here gives the shape of its teeth."""
+        """Return errors for a pair whose second gear is a ring, for which the form of the teeth must be given."""
         name = "form" if self.method == "lewis" else "bending_geometry"
         if self.allowable_bending is None or getattr(self.factors, name) is not None:
             return []
         return [("/allowable_bending", f"the bending stress of a ring needs factors/{name}; give it")]
 
     def find_helix_errors(self) -> list[tuple[str, str]]:
-        """Return errors for helical teeth, whose load sharing is read from charts or unknown."""
+        """Return errors for helical teeth, whose bending geometry factor is read from charts and must be given."""
         if self.method == "lewis":
             return [("/method", "Lewis's equation is for spur teeth; use agma for helical ones")]
         if self.allowable_bending is None or self.factors.bending_geometry is not None:
@@ -136,7 +136,7 @@ class StrengthMethod(Statement):
 
     @property
     def required_safeties(self) -> list[str]:
-        """Names of the safety factors for which allowable stresses are given."""
+        """Names of the safety factors whose allowable stresses are given."""
         stated = {"bending_safety": self.allowable_bending, "contact_safety": self.allowable_contact}
         return [name for name, allowable in stated.items() if allowable is not None]
 
@@ -161,7 +161,7 @@ class CarriedPower(StrengthSpec):
 
     @property
     def power(self) -> float:
-        """Power on the input shaft and, as losses are neglected, on all others, W."""
+        """Power on the input shaft, W, and on all other shafts, since losses are neglected."""
         return 1000.0 * self.power_kw
 
     @property
@@ -170,7 +170,7 @@ class CarriedPower(StrengthSpec):
         return self.speed_rpm * math.pi / 30.0
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """Return errors that no single field shows, by the path below this statement."""
+        """Return errors that the validation of single fields cannot find, by the path below this statement."""
         if self.required_safeties:
             return super().find_errors()
         return [*super().find_errors(), ("/allowable_bending", "give allowable_bending or allowable_contact, in MPa")]
@@ -228,11 +228,22 @@ class PairStrength(Answer):
 
 
 class LoadedPair(NamedTuple):
-    """A pair of gears in millimetres, its power (W), the speed of its first gear (rad/s), and its reversed bending.
+    """A pair of gears and its load.
 
-    ``both_ways`` states which of the gears are bent in both directions. With ``spares_rings`` the unknown bending
-    stress of a ring is not judged. Helical gears are those of the plane of rotation, with their ``helix_angle`` in
-    radians.
+    Attributes
+    ----------
+    contact : Contact
+        The gears in millimetres; helical gears in the plane of rotation.
+    power : float
+        Transmitted power, W.
+    speed : float
+        Speed of the first gear, rad/s.
+    both_ways : pair of bool
+        Whether the teeth of the first and of the second gear are bent in both directions.
+    spares_rings : bool
+        Whether the unknown bending stress of a ring is not judged.
+    helix_angle : float
+        Helix angle, radians; 0 for spur gears.
     """
 
     contact: Contact
@@ -248,7 +259,7 @@ class LoadedPair(NamedTuple):
         return self.contact.mesh.pinion.module * math.cos(self.helix_angle)
 
     def project_to_normal_plane(self, gear: Gear) -> Gear:
-        """Return a gear of the pair, replacing a helical one by its equivalent spur gear with z / cos³ β teeth."""
+        """Return the equivalent spur gear of a helical gear, with z / cos³ β teeth; a spur gear is unchanged."""
         if self.helix_angle == 0.0:
             return gear
         shrunk = math.cos(self.helix_angle)
@@ -280,14 +291,14 @@ class LoadedPair(NamedTuple):
         return 2.0 * mesh.pinion.pitch_radius * wide, 2.0 * mesh.gear.pitch_radius * wide
 
     def compute_load(self, width: float) -> Load:
-        """Compute the tangential load (N, m/s) over a face of this width, millimetres."""
+        """Compute the load, with its tangential force (N) and speed (m/s), for a face width in millimetres."""
         diameters = self.working_diameters
         velocity = self.speed * 0.5e-3 * diameters[0]
         return Load(self.power / velocity, velocity, width, self.contact.mesh.pinion.module, min(diameters))
 
 
 class Stresses(NamedTuple):
-    """Stresses at a face width: the load, factors common to both gears, and a row of values for each gear."""
+    """Stresses at a face width: the load, the factors common to both gears, and a row of values for each gear."""
 
     load: Load
     dynamic: float
@@ -297,7 +308,7 @@ class Stresses(NamedTuple):
     sharing: float | None = None
 
     def select_safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
-        """Return the named safety factors of both gears, by name, except those that are not judged."""
+        """Return pairs (name, value) of the named safety factors of both gears, except those that are not judged."""
         judged = [(row, name) for row in self.gears for name in names]
         return [(name, row[name]) for row, name in judged if name != "bending_safety" or "bending_judged" not in row]
 
@@ -307,7 +318,10 @@ class Stresses(NamedTuple):
 
 
 class StressCalculator:
-    """Stresses of a pair over its face width; quantities that do not depend on the width are computed once."""
+    """Calculator of the stresses of a pair as functions of its face width.
+
+    Quantities that do not depend on the width are computed once.
+    """
 
     def __init__(self, loaded: LoadedPair, stated: StrengthMethod) -> None:
         self._loaded, self._stated = loaded, stated
@@ -323,7 +337,7 @@ class StressCalculator:
 
     @staticmethod
     def _compute_lewis_factor(gear: Gear) -> float | None:
-        """Compute Lewis's form factor; None for a ring, and for a tooth whose profile is no beam."""
+        """Compute Lewis's form factor; None for a ring, or if the tooth profile is not that of a beam."""
         try:
             return None if gear.internal else strength.compute_lewis_form(gear)
         except DimensionError:
@@ -338,14 +352,14 @@ class StressCalculator:
             return None
 
     def replace_power(self, power: float, turning: float) -> StressCalculator:
-        """Return the same pair with another power (W) and another speed of its first gear (rad/s)."""
-        # A shallow copy shares the geometry factors, and the cached maximum force, which do not depend on the power.
+        """Return a calculator for the same pair with another power (W) and another speed of its first gear (rad/s)."""
+        # A shallow copy shares the geometry factors and the cached maximum force, which do not depend on the power.
         other = copy(self)
         other._loaded = self._loaded._replace(power=power, speed=turning)
         return other
 
     def compute_stresses(self, width: float) -> Stresses:
-        """Compute the stresses over a face of this width, millimetres."""
+        """Compute the stresses for a face width in millimetres."""
         stated, factors, load = self._stated, self._stated.factors, self._loaded.compute_load(width)
         mesh = self._loaded.contact.mesh
         if stated.method == "lewis":
@@ -407,8 +421,8 @@ class StressCalculator:
     def max_dynamic_force(self) -> float:
         """Maximum tangential force times dynamic factor that a permitted face width bears, N; 0 if a stress is unknown.
 
-        The widest face bears most: up to 100 modules K_m and K_s together grow more slowly than the 0.83rd power of the
-        width. Bending stress is proportional to the force, contact stress to its square root.
+        The widest face bears the largest force: up to 100 modules, the product of K_m and K_s grows more slowly than
+        the 0.83rd power of the width. Bending stress is proportional to the force, contact stress to its square root.
         """
         names, found = self._stated.required_safeties, self.compute_stresses(self._list_widths()[-1])
         shares = found.select_safeties(names)
@@ -419,8 +433,8 @@ class StressCalculator:
     def compute_max_power(self, turning: float) -> float:
         """Compute the maximum power (W) that a permitted face width carries at a speed of the first gear (rad/s).
 
-        With rising speed the force falls by more than the dynamic factor rises, so that this power rises with the
-        speed.
+        At constant power, the force falls with rising speed by more than the dynamic factor rises, so that this power
+        rises with the speed.
         """
         load = self._loaded._replace(power=1.0, speed=turning).compute_load(1.0)
         return self.max_dynamic_force / (load.force * self._compute_dynamic_factor(load))
@@ -441,14 +455,14 @@ class StressCalculator:
     def find_min_width(self) -> float | None:
         """Find the minimum face width within the allowable stresses, millimetres.
 
-        None if no width up to the maximum suffices, if no allowable stress is given, or if a stress is unknown.
+        Return None if no width up to the maximum suffices, if no allowable stress is given, or if a stress is unknown.
         """
         names, before = self._stated.required_safeties, 0.0
         if not names:
             return None
         for width in self._list_widths():
             if self.compute_stresses(width).has_safeties(names):
-                # Bisect between the last width that fails and the first that suffices, down to rounding.
+                # Bisect between the last width that fails and the first that suffices, to rounding level.
                 for _ in range(60):
                     middle = 0.5 * (before + width)
                     kept = middle > 0.0 and self.compute_stresses(middle).has_safeties(names)
@@ -459,18 +473,21 @@ class StressCalculator:
 
 
 def find_common_width(judges: list[StressCalculator], names: list[str]) -> float | None:
-    """Find the minimum width, millimetres, at which all pairs have the named safety factors; None if none exists."""
+    """Find the minimum face width, millimetres, at which the named safety factors of all pairs are at least 1.
+
+    Return None if there is no such width.
+    """
     least = [judge.find_min_width() for judge in judges]
     known = [width for width in least if width is not None]
     if len(known) < len(least):
         return None
     width = max(known)
-    # Factors depend on the width, so that a wider face of one pair has to be verified for the others.
+    # The factors depend on the width, so the width that one pair needs must be verified for the others.
     return width if all(judge.compute_stresses(width).has_safeties(names) for judge in judges) else None
 
 
 def describe_power_rejections(failed: int) -> str:
-    """Describe that the design carries the power, and how many trains were rejected because they do not."""
+    """Return the sentence that a design carries the power, with the number of better trains that do not."""
     before = (
         format_count(failed, "better train does not", "better trains do not") if failed else "all trains checked do"
     )
@@ -478,7 +495,11 @@ def describe_power_rejections(failed: int) -> str:
 
 
 def describe_too_weak(required: CarriedPower, failed: int, every: bool, strongest: float) -> str:
-    """Describe that no train carries the power; ``strongest`` is the power of the strongest, W, or 0 if unknown."""
+    """Return the sentences that no train carries the power.
+
+    ``failed`` trains were checked, which are all possible ones if ``every``. ``strongest`` is the power that the
+    strongest of them carries, W; 0 if it is unknown.
+    """
     which = f"the {failed} possible trains" if every else f"the best {failed} trains"
     sentence = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
     if strongest:
@@ -491,8 +512,12 @@ def build_stage_contact(stage: TrainStage, place: int, pressure_angle: float, un
 
     Parameters
     ----------
+    stage : TrainStage
+        The stage.
     place : int
         Index of the mesh in the stage, from 0; stages with idlers have several meshes.
+    pressure_angle : float
+        Pressure angle, radians.
     unit : float
         Millimetres per unit of the module.
     """
@@ -510,7 +535,7 @@ def describe_strength(loaded: LoadedPair, method: StrengthMethod, face_width: fl
     judge = StressCalculator(loaded, method)
     least = judge.find_min_width()
     width = least if face_width is None else face_width * unit
-    # Without a width only the load and the factors that do not depend on it are reported, at an arbitrary 1 mm.
+    # Without a width, only values that do not depend on it are reported; they are computed for an arbitrary 1 mm.
     found = judge.compute_stresses(1.0 if width is None else width)
     rows = found.gears
     if width is None:

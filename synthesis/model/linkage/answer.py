@@ -1,6 +1,6 @@
-"""Linkages in answers: their usual dimensions, their skeleton, and their measured properties.
+"""Models of linkages in answers: usual dimensions, skeleton, and measured properties.
 
-A mechanism contains dimensions only; its measured properties are in ``targets``, ``verification`` and ``metrics``.
+A mechanism contains dimensions only. Its measured properties are in ``targets``, ``verification`` and ``metrics``.
 """
 
 from __future__ import annotations
@@ -230,7 +230,7 @@ class TargetInput(Answer):
 
     @property
     def position(self) -> float:
-        """Input for an analysis, degrees or length units."""
+        """The input, degrees or length units."""
         stated = self.input_place if self.input_angle is None else self.input_angle
         assert stated is not None
         return stated
@@ -407,8 +407,7 @@ ERROR_FIELDS = {
     "steering_error": "steering_error",
     "rms_residual": "rms",
 }
-"""Fields of the metrics that hold the error of a design, and the error's name in the front; the first present counts.
-"""
+"""Names of errors in the Pareto front, by field of the metrics. The first field that a design has is its error."""
 
 
 class Front(Answer):

@@ -46,7 +46,7 @@ class FourbarConfiguration(NamedTuple):
         return abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4), abs(self.o4 - self.o2)
 
     def has_no_link_below(self, share: float) -> bool:
-        """Return whether every link is longer than this share of the longest; otherwise it is no linkage."""
+        """Return whether every link is longer than this share of the longest one; otherwise it is degenerate."""
         return min(self.lengths) > share * max(self.lengths)
 
 
@@ -111,8 +111,8 @@ def remove_coupler_point(mechanism: Pinned) -> Pinned:
 def build_fourbar(joints: FourbarConfiguration, body_angle: float | None = None) -> FourbarMechanism:
     """Build the fourbar with the given joints at the first target.
 
-    Joints connected by a link must not coincide. A configuration exactly on a toggle counts as open. ``body_angle``
-    (degrees) is the angle of the body there, if it differs from the requested one.
+    Joints connected by a link must not coincide. A configuration exactly at a toggle counts as open. ``body_angle``,
+    degrees, is the angle of the body at the first target if it differs from the requested one.
     """
     o2, a, b, o4, p = joints
     crank, coupler, output, diagonal = a - o2, b - a, b - o4, o4 - a
@@ -120,7 +120,7 @@ def build_fourbar(joints: FourbarConfiguration, body_angle: float | None = None)
         fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(o4)),
         links=FourbarLinks(ground=abs(o4 - o2), input=abs(crank), coupler=abs(coupler), output=abs(output)),
         coupler_point=build_coupler_point(a, b, p),
-        # The side of B from the line A → O4; a toggle counts as open.
+        # The assembly depends on the side of the line A → O4 on which B lies.
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(crank)),
         reference_body_angle=body_angle,
@@ -197,14 +197,17 @@ def build_inverted_slider_crank(
 
 
 def compute_body_shift(mechanism: LinkageMechanism, demanded: float) -> float:
-    """Return the body's rotation in the reference from the first requested angle (degrees), radians in [−π, π]."""
+    """Return the rotation of the body from the first requested angle to the reference configuration, in [−π, π].
+
+    ``demanded`` is the requested angle in degrees; the result is in radians.
+    """
     stands = mechanism.reference_body_angle
-    # The shorter rotation, because angles of a body are known modulo a full turn.
+    # Return the shorter rotation, because angles of a body are known modulo a full turn.
     return 0.0 if stands is None else math.radians(math.remainder(stands - demanded, 360.0))
 
 
 class DrivenFourbar(NamedTuple):
-    """A fourbar for the analysis core: linkage, assembly sign and input angle (radians) of the reference."""
+    """A fourbar for the analysis core: linkage, assembly sign, and input angle (radians) in the reference."""
 
     linkage: Fourbar
     assembly: int

@@ -1,6 +1,6 @@
-"""Description of a given linkage: pivots, lines, lengths, and the skeleton. Data only.
+"""Models that describe a given linkage: pivots, lines, lengths, and the skeleton.
 
-:mod:`synthesis.mechanisms` converts it for the analysis core, which it imports.
+:mod:`synthesis.mechanisms` converts them to mechanisms of the analysis core, which is not imported here.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ AGREEMENT_TOLERANCE = 1e-6
 """Relative tolerance of redundant dimensions (ground, offset), for the rounding of printed digits."""
 
 ROUNDING_TOLERANCE = 1e-12
-"""Additional tolerance of distances, as a share of the largest coordinate: coinciding joints differ by rounding."""
+"""Additional tolerance of distances, as a share of the largest coordinate, for the rounding of coordinates."""
 
 BODY_DESCRIPTION = "Angle of the guided body in the reference configuration, degrees; ignored."
-"""Description of a field of designs that an analysis ignores."""
+"""Description of a field that designs have and that an analysis ignores."""
 
 Assembly = Literal["open", "crossed"]
 
@@ -42,7 +42,7 @@ class CouplerPointSpec(Statement):
 
     @property
     def vector(self) -> complex:
-        """P in the coupler's frame."""
+        """P in the coupler's frame, complex, length units."""
         return cmath.rect(self.distance, math.radians(self.angle))
 
 

@@ -1,4 +1,4 @@
-"""Requested motion of an input in equal steps."""
+"""Models of the requested motion of an input in equal steps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.problem import Count, Number, Statement
 
 MAX_POSITIONS = 10_000
-"""Maximum number of positions of one analysis; a finer motion has to be requested in parts."""
+"""Maximum number of positions of one analysis. A finer motion must be requested in parts."""
 
 FULL_TURN = 360.0
 
@@ -32,13 +32,13 @@ class DriveSpeed(Statement):
 
     @property
     def rate(self) -> float:
-        """Input speed, rad/s; 1 by default, so that rates are per radian."""
+        """Input speed, rad/s; 1 by default, so that velocities are per radian of the input."""
         if self.speed is not None:
             return self.speed
         return 1.0 if self.speed_rpm is None else self.speed_rpm * RAD_PER_S
 
     def drive_geared(self, ratio: float, angle: Real, speed: Real) -> dict[str, list[float]]:
-        """Return angles (degrees), speeds and accelerations of a shaft that turns ``ratio`` times as fast."""
+        """Return angle (degrees), speed and acceleration of a shaft that turns ``ratio`` times as fast as the input."""
         return {
             "angle": (ratio * angle).tolist(),
             "omega": (ratio * speed).tolist(),
@@ -46,7 +46,7 @@ class DriveSpeed(Statement):
         }
 
     def find_errors(self) -> list[tuple[str, str]]:
-        """Return errors that no single field shows: (JSON pointer in the request, detail)."""
+        """Return errors that the validation of single fields cannot find, as pairs (JSON pointer, detail)."""
         if self.speed is not None and self.speed_rpm is not None:
             return [("/motion/speed_rpm", "give the speed in rad/s or in revolutions per minute, not both")]
         return []
@@ -70,7 +70,7 @@ class Sweep(DriveSpeed):
     steps: Annotated[Count, Field(ge=1, le=MAX_POSITIONS - 1)] = 360
 
     def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
-        """Return inputs, speeds and None, as the times are unknown."""
+        """Return inputs and their speeds, each of shape (steps + 1,), and None, because the times are unknown."""
         start, end = self.start or 0.0, FULL_TURN if self.end is None else self.end
         at = np.asarray(np.linspace(start, end, self.steps + 1), np.float64)
         return at, np.full(len(at), self.rate), None

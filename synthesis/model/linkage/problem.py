@@ -42,7 +42,7 @@ class Region(Statement):
     def contains(self, point: complex) -> bool:
         """Return whether a point lies in the region or, to rounding, on its edge."""
         (left, right), (low, high) = self.x, self.y
-        # Relative to the coordinates, as a region far from the origin has coarser rounding.
+        # The slack is relative to the coordinates, because rounding is coarser far from the origin.
         slack = EDGE_TOLERANCE * max(abs(left), abs(right), abs(low), abs(high))
         return bool(left - slack <= point.real <= right + slack and low - slack <= point.imag <= high + slack)
 
@@ -58,7 +58,7 @@ class Region(Statement):
         (left, right), (low, high) = self.x, self.y
         across = np.maximum(np.maximum(left - points.real, points.real - right), 0.0)
         along = np.maximum(np.maximum(low - points.imag, points.imag - high), 0.0)
-        # Exactly 0 on the edge, where rounding might give a tiny distance.
+        # The distance is exactly 0 on the edge, where rounding might give a tiny distance.
         return np.where(self.mark_contained(points), 0.0, np.hypot(across, along))
 
     def sample_points(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
@@ -150,7 +150,7 @@ class Constraints(Statement):
         return []
 
     def find_class_contradictions(self, classes: Collection[str], reason: str) -> list[Contradiction]:
-        """Return the contradiction of a required class that is not among the possible ``classes``, if there is one."""
+        """Return a contradiction if the required Grashof class is not among the possible ``classes``."""
         if self.grashof == "any" or self.grashof in classes:
             return []
         return [Contradiction("/constraints/grashof", f"{reason}; drop the constraint")]
@@ -200,9 +200,9 @@ class LinkageProblem(ProblemBase):
         return self._listed_later
 
     def list_later(self, order: str, most: int) -> Self:
-        """Return the statement with another order and at least ``most`` designs, which are cut off later."""
+        """Return the statement with another order and at least ``most`` designs; surplus designs are cut off later."""
         asked = self.model_copy(update={"rank_by": order, "max_designs": max(self.max_designs, most)})
-        # A private field: the client cannot set it, and it is not part of the answer.
+        # This is a private field: the client cannot set it, and it is not part of the answer.
         asked._listed_later = True
         return asked
 
@@ -233,9 +233,10 @@ class LinkageProblem(ProblemBase):
     def measure_target_errors(
         self, design: Any, counted: NDArray[np.bool_] | None = None
     ) -> tuple[float | None, float | None]:
-        """Return the maximum distance and angle (degrees) by which a design misses its targets; None without any.
+        """Return the maximum distance and the maximum angle, degrees, by which a design misses its targets.
 
-        ``counted`` marks the targets that count; by default all.
+        A maximum is None if no target has such an error. ``counted`` is a mask of the targets that count; by default
+        all of them do.
         """
         targets = [target for n, target in enumerate(design.targets) if counted is None or counted[n]]
         angles = [target.angle_residual for target in targets if target.angle_residual is not None]
@@ -243,7 +244,7 @@ class LinkageProblem(ProblemBase):
 
     @property
     def task_size(self) -> float | None:
-        """Size of the task in length units, to which distances are compared; None if the task has none."""
+        """Size of the task in length units, with which distances are compared; None if the task has no size."""
         return None
 
     @property
@@ -253,7 +254,7 @@ class LinkageProblem(ProblemBase):
 
     @property
     def first_pose(self) -> tuple[complex, float] | None:
-        """First pose of a carried body: its point P and its angle in degrees. None for tasks without a body."""
+        """First pose of the carried body: position of P, and angle in degrees. None for tasks without a body."""
         return None
 
     def find_contradicting_constraints(self) -> list[Contradiction]:
@@ -269,7 +270,7 @@ class LinkageProblem(ProblemBase):
             detail = "ranking by yield needs `manufacture` with tolerances and a quality"
             listed.append(Contradiction("/rank_by", detail))
         listed += self._find_manufacture_errors()
-        # The remaining checks concern tasks without a body.
+        # The remaining checks concern only tasks without a body.
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
@@ -282,7 +283,7 @@ class LinkageProblem(ProblemBase):
         return listed
 
     def _find_forces_without_loads(self) -> list[Contradiction]:
-        """Return force limits and orders for which `dynamics`, loads or the right kind of input are missing."""
+        """Return errors of force limits and orders that lack `dynamics` or loads, or do not suit the type of input."""
         demanded = {f"/constraints/max_{name}": name for name in self.constraints.force_limits}
         if self.rank_by in FORCE_NAMES:
             demanded["/rank_by"] = self.rank_by

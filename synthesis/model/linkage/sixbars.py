@@ -17,14 +17,14 @@ SIXBAR_NAMES: Mapping[str, str] = {
     "stephenson_2": "Stephenson II sixbar",
     "stephenson_3": "Stephenson III sixbar",
 }
-"""Name of each type in sentences and on sheets."""
+"""Name of each type, for sentences and drawings."""
 
 
 def list_lengths(joints: Mapping[str, complex], links: Links, *, point: str | None = "P") -> dict[str, float]:
-    """Return the distance of the first two pins of each link under its name.
+    """Return the lengths of links by name: the distance between the first two pins of each link.
 
-    A link with three pins also has the distances of its third pin from the first and the second, under its name with
-    ``_arm`` and ``_side``. The joint ``point`` is no pin; None if all joints are pins.
+    A link with three pins also has the distances of its third pin from the first and from the second, under its name
+    with the suffixes ``_arm`` and ``_side``. The joint ``point`` is not a pin; it is None if all joints are pins.
     """
     lengths: dict[str, float] = {}
     for name, listed in links.items():

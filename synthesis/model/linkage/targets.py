@@ -36,7 +36,7 @@ class TargetSpec(Statement):
     @model_validator(mode="before")
     @classmethod
     def _validate_sort(cls, fields: object) -> object:
-        # Leave wrong types to pydantic's own message.
+        # For a wrong type, pydantic's own message is better.
         if not isinstance(fields, dict):
             return fields
         has = {name for name in ("x", "y", "angle", "output", "input_angle") if fields.get(name) is not None}
@@ -48,7 +48,7 @@ class TargetSpec(Statement):
 
     @property
     def sort(self) -> str:
-        """``poses``, ``points`` or ``outputs``."""
+        """Sort of target: ``poses``, ``points`` or ``outputs``."""
         return "outputs" if self.output is not None else "points" if self.angle is None else "poses"
 
 

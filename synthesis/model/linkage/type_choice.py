@@ -1,8 +1,8 @@
 """Field ``mechanisms`` of kinds that support sixbars: ``auto``, or a list of the types to search.
 
-A kind defines its types by a literal, and lists the constraints that its sixbars do not support. Without the field
-nothing changes. ``auto`` accepts every statement and searches sixbars only if they support it. A list of types
-is refused, with a message at each field that its sixbars do not support.
+A kind defines its types by a literal, and lists the fields that its sixbars do not support. Without the field
+``mechanisms`` no sixbars are searched. ``auto`` accepts every statement and searches sixbars only if they support it. A
+list of types is refused if its sixbars do not support the statement, with a message at each field concerned.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from synthesis.model.problem import Contradiction
 Name = TypeVar("Name", bound=str)
 
 Auto = Literal["auto"]
-"""The simplest type that satisfies the constraints, and other types if they are clearly better."""
+"""Choice of the simplest type that satisfies the constraints, and of other types if they are clearly better."""
 
 
 UNCLASSED_SIXBAR: Literal["stephenson_2"] = "stephenson_2"
-"""The sixbar that contains no fourbar O2 A B O4, so that it has no Grashof class; its input drives a triad."""
+"""The sixbar without a fourbar O2 A B O4, so that it has no Grashof class; its input drives a triad."""
 
 
 def select_requested_types(requested: Auto | Sequence[str] | None, every: Sequence[Name]) -> tuple[Name, ...]:
-    """Return the requested ones of all types: all for ``auto``, none if the field is left out."""
+    """Return the requested types among ``every``: all of them for ``auto``, none if the field is left out."""
     if requested is None:
         return ()
     return tuple(name for name in every if requested == "auto" or name in requested)
@@ -33,36 +33,36 @@ def select_requested_types(requested: Auto | Sequence[str] | None, every: Sequen
 def select_searched_sixbars(
     requested: Auto | Sequence[str] | None, every: Sequence[Name], unsupported: Iterable[Contradiction]
 ) -> tuple[Name, ...]:
-    """Return the sixbars to search: the requested ones, and for ``auto`` all or none, if something is unsupported."""
+    """Return the sixbars to search: the requested ones; for ``auto`` all of them, or none if a field is unsupported."""
     return () if requested == "auto" and any(True for _ in unsupported) else select_requested_types(requested, every)
 
 
 def find_sixbar_contradictions(
     requested: Auto | Sequence[str] | None, every: Sequence[str], unsupported: Iterable[Contradiction]
 ) -> list[Contradiction]:
-    """Return the fields that contradict an explicit list with sixbars."""
+    """Return the contradictions of fields that the sixbars of an explicit list do not support."""
     return list(unsupported) if isinstance(requested, list) and select_requested_types(requested, every) else []
 
 
 def describe_skipped_sixbars(unsupported: Iterable[Contradiction]) -> str:
-    """Describe why ``auto`` searched no sixbars, by the fields that they do not support."""
+    """Describe why ``auto`` searched no sixbars: name the fields that they do not support."""
     return f"Sixbars were not searched: they do not support {_list_fields(unsupported)}."
 
 
 def remove_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> tuple[Name, ...]:
-    """Return the sixbars to search, without :data:`UNCLASSED_SIXBAR` if it does not support some fields."""
+    """Return the sixbars to search, without :data:`UNCLASSED_SIXBAR` if there are fields that it does not support."""
     left_out = any(True for _ in beyond)
     return tuple(name for name in named if not (left_out and name == UNCLASSED_SIXBAR))
 
 
 def describe_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> str:
-    """Describe why :data:`UNCLASSED_SIXBAR` was requested but not searched, by the fields; empty if it was searched."""
+    """Describe why :data:`UNCLASSED_SIXBAR` was requested but not searched; empty if it was searched."""
     fields = _list_fields(beyond) if UNCLASSED_SIXBAR in named else ""
     return f"Stephenson II sixbars were not searched: they do not support {fields}." if fields else ""
 
 
 def refuse_class(limits: Constraints) -> list[Contradiction]:
-    """Return the contradiction of a Grashof class requested of :data:`UNCLASSED_SIXBAR`, if there is one."""
+    """Return a contradiction if a Grashof class is required of :data:`UNCLASSED_SIXBAR`."""
     return limits.find_class_contradictions(
         (), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
     )
@@ -73,7 +73,7 @@ def _list_fields(faults: Iterable[Contradiction]) -> str:
 
 
 def find_unsupported_by_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:
-    """Yield the fields that no sixbar supports, for all kinds of problems."""
+    """Yield contradictions of the fields that no sixbar supports, for all kinds of problems."""
     if problem.manufacture is not None:
         yield Contradiction("/manufacture", "sixbars do not support `manufacture`; leave it or the sixbars out")
     for name in ("fixed_pivots", "moving_pivots"):

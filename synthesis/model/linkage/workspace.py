@@ -1,4 +1,4 @@
-"""Workspace of a linkage: zones for its pivots, a box, obstacles, and the width of its links."""
+"""Models of the workspace of a linkage: zones for its pivots, a box, obstacles, and the width of its links."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Space(Statement):
 
     @property
     def has_swept_constraints(self) -> bool:
-        """Whether the motion is constrained, not only the pivots."""
+        """Whether the workspace constrains the motion, not only the pivots."""
         return self.box is not None or bool(self.obstacles)
 
     @property
@@ -96,9 +96,9 @@ class Space(Statement):
         return not self.has_swept_constraints and self.fixed_pivots is None and self.moving_pivots is None
 
     def shrink_box_for_joints(self, farther: float = 0.0) -> tuple[float, float, float, float] | None:
-        """Return the box for joints: minimum and maximum x, minimum and maximum y; None without a box.
+        """Return the box for joints: minimum and maximum x, minimum and maximum y; None if there is no box.
 
-        It is smaller than the box for parts by half a link's width plus ``farther`` on every side. The clearance
+        On every side it is smaller than the box for parts, by half a link's width plus ``farther``. The clearance
         applies to obstacles only: links may touch the sides of the box.
         """
         if self.box is None:
@@ -108,7 +108,7 @@ class Space(Statement):
         return left + inward, right - inward, low + inward, high - inward
 
     def move_with_body(self, first: complex, place: complex, turn: complex) -> Self:
-        """Return the workspace for another first position of the body; zones and outline on the body move with it.
+        """Return the workspace for another first position of the body, with its outline and the zones on it moved.
 
         ``first`` is the old position of P, ``place`` the new one, and ``turn`` the rotation e^{iα} of the body.
         """
@@ -132,9 +132,9 @@ class Space(Statement):
         return self.model_copy(update=update)
 
     def compute_spare_clearance(self, points: Mapping[int, complex], turns: Mapping[int, complex]) -> float:
-        """Compute the smallest excess of the body's distance from obstacles and sides over the required one.
+        """Compute the minimum of the body's distances from obstacles and sides of the box, minus the required ones.
 
-        In length units; parameters as for :meth:`find_body_collisions`.
+        The result is in length units. Parameters are those of :meth:`find_body_collisions`.
         """
         spare = math.inf
         for k, point in points.items():
@@ -148,7 +148,7 @@ class Space(Statement):
         return spare
 
     def _place_body(self, point: complex, turn: complex, first: complex) -> tuple[Complex, float]:
-        """Return the corners of the body (only P without an outline) and the radius by which they are widened."""
+        """Return the corners of the body and the radius by which they are widened; without an outline, only P."""
         if self.body is None:
             return np.array([point]), 0.5 * self.link_width
         outline = np.array([complex(*corner) for corner in self.body.outline])
@@ -162,7 +162,7 @@ class Space(Statement):
         points : mapping of int to complex
             P in the positions that are required exactly, by their numbers; the first one is position 0.
         turns : mapping of int to complex
-            Rotation e^{iα} of the body from the first position.
+            Rotation e^{iα} of the body from the first position, by the same numbers.
         """
         if not self.has_swept_constraints:
             return []
@@ -178,5 +178,5 @@ class Space(Statement):
                 if zone.compute_distance_from(corners) < self.clearance + width or zone.is_entered_by(corners):
                     detail = f"the body in position {k} is closer to this obstacle than the clearance"
                     found.append(Contradiction(f"/space/obstacles/{n}", detail))
-        # One message per obstacle or box: the first position that collides.
+        # Report one message for each obstacle or box: that of the first position that collides.
         return list({fault.path: fault for fault in reversed(found)}.values())[::-1]

@@ -1,4 +1,4 @@
-"""Shapes in the plane: permitted zones of pivots, and obstacles."""
+"""Models of areas in the plane: permitted zones of pivots, and obstacles."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 
 MAX_VERTICES = 1000
-"""Maximum number of vertices of an outline, as of a circle in steps of a third of a degree. The cost of a sweep grows
-with the pairs of edges."""
+"""Maximum number of vertices of an outline; they suffice for a circle in steps of a third of a degree. The cost of a
+sweep grows with the number of pairs of edges."""
 
 EDGE_TOLERANCE = 1e-9
 """Distance outside an area, as a share of the largest coordinate, up to which points count as lying on its edge."""
@@ -96,7 +96,7 @@ class Zone(Statement):
         return shape
 
     def compute_distances(self, points: Complex) -> Real:
-        """How far points, of any shape, lie outside, in length units; 0 within and, to rounding, on the edge."""
+        """Compute distances of points (any shape) from the zone, length units; 0 inside and on the edge to rounding."""
         if self.circle is not None:
             centre = complex(*self.circle.center)
             away = np.abs(points - centre) - self.circle.radius
@@ -127,7 +127,7 @@ class Zone(Statement):
         return bool(other.relate_pattern(self._shape, "T********"))
 
     def sample_points(self, rng: np.random.Generator, count: int) -> Complex:
-        """Points spread evenly over the area, shape (count,)."""
+        """Sample points uniformly from the area, complex, shape (count,)."""
         if self.circle is not None:
             distance = self.circle.radius * np.sqrt(rng.uniform(0.0, 1.0, count))
             return np.asarray(complex(*self.circle.center) + distance * np.exp(2j * np.pi * rng.uniform(size=count)))
@@ -136,7 +136,7 @@ class Zone(Statement):
         weights = np.abs(((corners[:, 1] - corners[:, 0]).conj() * (corners[:, 2] - corners[:, 0])).imag)
         chosen = corners[rng.choice(len(corners), count, p=weights / weights.sum())]
         first, second = rng.uniform(0.0, 1.0, (2, count))
-        # Reflect samples beyond the diagonal, so that the parallelogram folds onto the triangle.
+        # Reflect samples beyond the diagonal of the parallelogram into the triangle.
         beyond = first + second > 1.0
         first, second = np.where(beyond, 1.0 - first, first), np.where(beyond, 1.0 - second, second)
         sides = chosen[:, 1:] - chosen[:, :1]
@@ -144,7 +144,7 @@ class Zone(Statement):
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """The box around it: x from, to, y from, to."""
+        """Bounding box: minimum and maximum x, minimum and maximum y."""
         points, radius = self.outline
         x, y = points.real, points.imag
         return float(x.min() - radius), float(x.max() + radius), float(y.min() - radius), float(y.max() + radius)
@@ -175,7 +175,7 @@ class MovingZone(Zone):
     ] = "plane"
 
     def move_with_body(self, moved: Callable[[tuple[float, float]], tuple[float, float]]) -> Self:
-        """Return the zone after moving the body; ``moved`` maps points of the body. Zones of the plane do not move."""
+        """Return the zone after a motion of the body, which maps points by ``moved``; a zone of the plane unchanged."""
         if self.frame == "plane":
             return self
         if self.circle is not None:
@@ -186,7 +186,7 @@ class MovingZone(Zone):
 
 
 class AnyZone:
-    """Union of several zones."""
+    """Union of several zones: a point may lie in any of them."""
 
     def __init__(self, zones: Sequence[Zone]) -> None:
         self.zones = tuple(zones)

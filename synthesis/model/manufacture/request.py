@@ -1,7 +1,7 @@
-"""Block ``manufacture`` of a statement: manufacturing accuracy of a linkage and the quality that it must keep.
+"""Models of the block ``manufacture`` of a statement: manufacturing accuracy of a linkage, and its required quality.
 
-See docs/mechanisms/manufacture.md. This module also defines how a kind describes its task to the block, and the
-requirements on a design at its targets.
+See docs/mechanisms/manufacture.md. This module also defines the description of a task that the block needs from each
+kind, and the requirements on a design at its targets.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MAX_STOCK = 20
 """Maximum number of link lengths in stock."""
 
 MAX_DRIVEN = 5_000_000
-"""Maximum number of samples times targets of a design: a few seconds of one core."""
+"""Maximum number of samples times targets of a design: they take a few seconds of one core."""
 
 CONFIDENCE_LEVEL = 0.99
 """Confidence level of the interval of a yield."""
@@ -167,7 +167,7 @@ class Manufacture(Exactness):
 
     @property
     def required_yield(self) -> float | None:
-        """The required yield, or None."""
+        """Required yield; None if none is required."""
         return None if self.quality is None else self.quality.yield_
 
     @property
@@ -176,7 +176,7 @@ class Manufacture(Exactness):
         return self.round is not None or self.stock is not None
 
     def find_errors(self, task: ManufactureTask) -> list[Contradiction]:
-        """Return errors that no single field shows, with paths below the block."""
+        """Return errors that the validation of single fields cannot find, with paths below the block."""
         listed = [*self._validate_blocks(), *self.find_task_errors(task)]
         if self.is_gridded and task.ungridded:
             listed.append(Contradiction("/round" if self.round is not None else "/stock", task.ungridded))
@@ -189,7 +189,7 @@ class Manufacture(Exactness):
         return listed
 
     def _validate_blocks(self) -> list[Contradiction]:
-        """Return errors of a block that is empty or lacks what its other fields need."""
+        """Return errors of a block that is empty, or that lacks fields that its other fields need."""
         if self.tolerances is not None or (self.is_gridded and self.required_yield is None):
             return []
         if self.is_gridded:
@@ -202,7 +202,7 @@ class Manufacture(Exactness):
 def list_fixed_coordinates(
     fixed: tuple[tuple[float | None, float | None] | None, tuple[float | None, float | None] | None],
 ) -> frozenset[str]:
-    """Return the names of the given coordinates of the fixed pivots, under the field names of every mechanism type."""
+    """Return the names of the coordinates of fixed pivots that are given, as dimensions of all types of mechanisms."""
     named = ("fixed_pivots.input", "fixed_pivot"), ("fixed_pivots.output",)
     return frozenset(
         f"{name}.{axis}"
@@ -215,7 +215,7 @@ def list_fixed_coordinates(
 
 def count_required_samples(demanded: float) -> int:
     """Return the number of samples that prove a yield if all of them are good."""
-    # Two-sided interval: all n good samples prove the yield y if yⁿ ≤ (1 − confidence)/2.
+    # The interval is two-sided: n good samples of n prove the yield y if yⁿ ≤ (1 − confidence)/2.
     return math.ceil(math.log(0.5 * (1.0 - CONFIDENCE_LEVEL)) / math.log(demanded))
 
 
@@ -248,7 +248,7 @@ class RequiredTargets:
     Attributes
     ----------
     inputs : float, shape (t,)
-        Input angles, radians, continuous.
+        Input angles, radians, continuous along the motion.
     points : complex, shape (t,), or None
         Required positions of P.
     angles : float, shape (t,), or None

@@ -1,4 +1,4 @@
-"""Jobs remember the key that they were posted under, and what was posted."""
+"""Idempotency key and hash of the request for each job."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -12,7 +12,8 @@ depends_on = None
 def upgrade() -> None:
     op.add_column("jobs", sa.Column("idempotency_key", sa.String(200)))
     op.add_column("jobs", sa.Column("request_hash", sa.String(64)))
-    # Decides between equal posts that arrive at once. Jobs without a key do not count as equal to each other.
+    # The unique index decides between equal requests that arrive at the same time. NULL keys are not equal to each
+    # other, so any number of jobs may have no key.
     op.create_index("jobs_by_idempotency_key", "jobs", ["idempotency_key"], unique=True)
 
 

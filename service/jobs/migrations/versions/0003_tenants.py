@@ -1,4 +1,4 @@
-"""API keys, and jobs that belong to the tenant of one."""
+"""API keys, and the tenant of each job."""
 
 import sqlalchemy as sa
 from alembic import op

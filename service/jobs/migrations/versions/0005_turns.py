@@ -1,4 +1,4 @@
-"""Whose turn it is: what a queued job is taken to cost, and its place among the jobs of all tenants."""
+"""Scheduling by turns: the estimated cost of a queued job, and its turn among the jobs of all tenants."""
 
 import sqlalchemy as sa
 from alembic import op

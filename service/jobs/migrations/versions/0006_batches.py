@@ -1,4 +1,4 @@
-"""Many problems at once: batches, their samples, and their shares among the jobs; which answers can be given again."""
+"""Batches, their samples, their shares in the job table, and the digests by which equal problems reuse answers."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,13 +1,14 @@
-"""The conic program of the best counterweights on some positions of the motion.
+"""The conic program for the best counterweights at selected positions of the motion.
 
-Variables are, in units of the linkage's mass and size, mass μ, first moment s and inertia J of each weight, and for
-each counted quantity the level t that it reaches. The set of feasible weights is convex:
+The variables, in units of the linkage's mass and size, are the mass μ, first moment s and inertia J of each weight, and
+the level t that each counted quantity reaches. The set of feasible weights is convex:
 
     J ≥ |s|²/μ + μ²/(2πρt)    a disc of density ρ and thickness t; with more inertia, a ring of the same mass,
     |s| ≤ R μ                 its centre within reach,
 
-two rotated second-order cones and one. So is every goal: a largest magnitude over positions, or a root of the mean
-square. The dual value of the program bounds all weights, as more positions only raise it.
+two rotated second-order cones and an ordinary one. Every objective is convex too: a maximum magnitude over positions,
+or a root mean square. The dual value of the program is a lower bound for all weights, because further positions can
+only raise it.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ from synthesis.numerics.conic import ConeRows, Solution, solve_conic_program
 
 @dataclass(frozen=True)
 class Level:
-    """A counted quantity: its values over its unbalanced one, its weight in the cost, and its cap.
+    """A counted quantity: its values relative to the unbalanced one, its weight in the cost, and its cap.
 
-    ``mean`` selects its root mean square instead of its largest magnitude.
+    ``mean`` selects the root mean square instead of the maximum magnitude.
     """
 
     name: str
@@ -39,7 +40,7 @@ class Level:
     mean: bool = False
 
     def evaluate_positions(self, parameters: Real) -> Real:
-        """Return the level by positions, shape (..., N); for a mean, the same at all of them."""
+        """Return the level at each position, shape (..., N); for a mean it is the same at all positions."""
         reached = np.stack([np.abs(part.evaluate(parameters)) for part in self.values])
         if self.mean:
             return np.asarray(np.sqrt((reached**2).mean(axis=-1, keepdims=True)).max(axis=0))
@@ -53,8 +54,8 @@ class Level:
 class Limits(NamedTuple):
     """Limits of each weight: maximum mass, reach, 2πρt (infinite for a point mass), and radius of gyration.
 
-    ``total`` is the maximum total mass. ``turning`` and ``carried`` are the masks of the weights whose inertia and
-    whose mass count.
+    ``total`` is the maximum total mass. ``turning`` marks the weights whose inertia counts, ``carried`` those whose
+    mass counts.
     """
 
     mass: Real
@@ -66,7 +67,7 @@ class Limits(NamedTuple):
     carried: NDArray[np.bool_]
 
     def has_inertia(self, n: int) -> bool:
-        """Return whether the inertia of a weight counts or is limited."""
+        """Return whether the inertia of weight n counts or is limited."""
         return bool(self.turning[n]) or math.isfinite(self.gyration[n])
 
 
@@ -82,9 +83,9 @@ class Answer(NamedTuple):
 def find_best_weights(
     levels: Sequence[Level], limits: Limits, at: Mapping[str, Sequence[int]], *, relaxed: bool
 ) -> Answer:
-    """Find the best weights on the positions ``at`` of each quantity.
+    """Find the best weights for the positions ``at`` of each quantity.
 
-    With ``relaxed`` all caps may be exceeded by a common share, and the smallest such share is found instead.
+    With ``relaxed``, all caps may be exceeded by a common share, and the program minimizes that share instead.
     """
     links = len(limits.mass)
     count = PARAMETER_COUNT * links
@@ -121,7 +122,7 @@ def find_best_weights(
 
 
 def _build_size_rows(limits: Limits, total: int) -> list[ConeRows]:
-    """Build the rows for masses within their bounds and centres within reach."""
+    """Build the constraint rows that keep masses within their bounds and centres within reach."""
     links = len(limits.mass)
     bounds, offsets = [], []
     for n in range(links):
@@ -147,7 +148,10 @@ def _build_size_rows(limits: Limits, total: int) -> list[ConeRows]:
 
 
 def _build_inertia_rows(limits: Limits, total: int, own: Mapping[int, int]) -> list[ConeRows]:
-    """Build J − j ≥ |s|²/μ and j ≥ μ²/(2πρt), j the disc's own in columns ``own``; J = 0 if it does not count."""
+    """Build J − j ≥ |s|²/μ and j ≥ μ²/(2πρt), with j the disc's own inertia in columns ``own``.
+
+    A weight whose inertia does not count gets J = 0.
+    """
     rows = []
     for n in range(len(limits.mass)):
         mass, inertia = PARAMETER_COUNT * n, PARAMETER_COUNT * n + 3
@@ -177,7 +181,7 @@ def _build_inertia_rows(limits: Limits, total: int, own: Mapping[int, int]) -> l
 
 
 def _build_peak_rows(level: Level, total: int, column: int, at: Sequence[int]) -> list[ConeRows]:
-    """Build |q| ≤ t at positions: cones for a force, pairs of inequalities for a real quantity."""
+    """Build |q| ≤ t at the given positions: cones for a force, pairs of inequalities for a real quantity."""
     rows = []
     listed = list(at)
     for part in level.values:
@@ -198,7 +202,7 @@ def _build_peak_rows(level: Level, total: int, column: int, at: Sequence[int]) -
 
 
 def _build_mean_rows(part: LinearQuantity, total: int, column: int) -> ConeRows:
-    """Build the root mean square ≤ t: one cone, from the triangular factor of all positions."""
+    """Build the root mean square ≤ t as one cone, from the triangular factor of the rows of all positions."""
     count = len(part.fixed)
     stacked = np.concatenate([part.by, part.fixed[None]]).T
     # The factor R has the same norm as the stacked rows: 2N rows shrink to K + 1.

@@ -1,4 +1,4 @@
-"""The block ``dynamics`` of an answer: the client's, with counterweights and geared inertias added."""
+"""The ``dynamics`` block of an answer: the client's block with counterweights and geared inertias added."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add_weights(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight
         own = machine.bodies.get(link)
         parts = [weight.body for weight in weights if weight.link == link]
         if own is not None and (float(own.mass) > 0.0 or float(own.inertia) > 0.0):
-            # A body without mass has no meaningful centre; its inertia is moved to the weight's.
+            # A body without mass has no meaningful centre: its inertia is placed at the weight's centre.
             parts.insert(0, own if float(own.mass) > 0.0 else make_body(0.0, complex(parts[0].cg), float(own.inertia)))
         whole = join_bodies(parts)
         cg = complex(whole.cg) / machine.scale

@@ -1,4 +1,4 @@
-"""Effects of a counterweight on the shaking force, the shaking moment, the drive and the joints: all are linear.
+"""Linear effects of a counterweight on the shaking force, the shaking moment, the drive and the joint forces.
 
 A weight of mass μ, first moment s and moment of inertia J about a joint O of its link, S = s e^{iφ}, adds
 
@@ -6,8 +6,8 @@ A weight of mass μ, first moment s and moment of inertia J about a joint O of i
     to its moment about c          −((O − c) × (μ a_O + S'') + S × a_O + J α) + (μ (O − c) + S) × g,
     to the power of the drive      μ a_O·v_O + a_O·S' + v_O·S'' + J ω α − g·(μ v_O + S'),   S' = i ω S,
 
-by momentum and energy, and to the forces in the joints the reactions to a unit of each parameter. So the quantities are
-linear in four numbers for each weight (Demeulenaere, Verschuure, Swevers and De Schutter,
+by the momentum and energy balances. The forces in the joints change by the reactions to a unit of each parameter.
+All quantities are therefore linear in four numbers for each weight (Demeulenaere, Verschuure, Swevers and De Schutter,
 A general and numerically efficient framework to design sector-type and cylindrical counterweights for balancing of
 planar linkages, J. Mech. Des. 132, 2010).
 """
@@ -32,7 +32,7 @@ PARAMETER_COUNT = 4
 
 
 class LinearQuantity(NamedTuple):
-    """A quantity over positions: its value without weights, shape (N,), and its change by each parameter, (K, N).
+    """A quantity over positions: its value without weights, shape (N,), and its change per parameter, shape (K, N).
 
     Forces are complex; other quantities are real.
     """
@@ -41,14 +41,14 @@ class LinearQuantity(NamedTuple):
     by: Complex
 
     def evaluate(self, parameters: Real) -> Complex:
-        """Return the quantity with weights, (..., N) for parameters of shape (..., K)."""
+        """Return the quantity with weights, shape (..., N), for parameters of shape (..., K)."""
         return np.asarray(self.fixed + parameters @ self.by)
 
 
 def compute_quantities(
     machine: Machine, now: Places, links: Sequence[str], joints: Sequence[str]
 ) -> dict[str, list[LinearQuantity]]:
-    """Compute shaking force and moment, the drive, and the forces in joints (on each of their links), by name."""
+    """Compute shaking force, shaking moment, drive and joint forces (one per link of a joint), keyed by name."""
     found = compute_reactions(machine, now)
     force, moment, drive = [], [], []
     gravity = np.asarray(machine.gravity)
@@ -70,7 +70,7 @@ def compute_quantities(
             )
             power = mass * dot(acceleration, velocity) + dot(acceleration, first) + dot(velocity, second)
             power = power + inertia * omega * alpha - dot(gravity, mass * velocity + first)
-            # Power over the input's rate is the drive's torque (or force).
+            # The power divided by the input's rate is the drive's torque (or force).
             drive.append(power / rate)
     listed = {
         "shaking_force": [LinearQuantity(found.shaking_force, np.array(force))],
@@ -99,7 +99,10 @@ def _compute_unit_reactions(machine: Machine, now: Places, link: str) -> list[Re
 
 
 def _convert_to_parameters(by: Complex) -> None:
-    """Convert to parameters in place: subtract the mass and the inertia of 1 of a mass offset from O."""
+    """Convert reactions to parameters in place.
+
+    A unit mass offset by one from O has a mass and an inertia of 1 besides its first moment: subtract both effects.
+    """
     for n in range(0, len(by), PARAMETER_COUNT):
         by[n + 1] -= by[n] + by[n + 3]
         by[n + 2] -= by[n] + by[n + 3]

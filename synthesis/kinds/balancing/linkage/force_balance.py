@@ -1,16 +1,16 @@
-"""Counterweights that balance the shaking force of any planar linkage, exactly.
+"""Counterweights that balance the shaking force of any planar linkage exactly.
 
-The linearly independent vectors of Berkof and Lowen (A new method for completely force balancing simple linkages,
-J. Eng. Ind. 91, 1969; Norton, *Design of Machinery*, 12.6-12.8), without setting up loop equations: no force shakes
-the frame in any motion if the momentum by the input, P(q) = Σ m r', vanishes at all positions. A weight of mass μ and
-of first moment c about a joint O of its link adds
+This is the method of linearly independent vectors of Berkof and Lowen (A new method for completely force balancing
+simple linkages, J. Eng. Ind. 91, 1969; Norton, *Design of Machinery*, 12.6-12.8), without loop equations. No force
+shakes the frame in any motion if the momentum per unit of input speed, P(q) = Σ m r', vanishes at all positions. A
+weight of mass μ and of first moment c about a joint O of its link adds
 
     μ O' + i φ' c e^{iφ},
 
-which is linear in μ and c; about a fixed pivot μ does not count. Over many generic positions that is a linear system,
-and it has a solution if and only if the closure of the loops lets the weights cancel the momentum.
+which is linear in μ and c. About a fixed pivot μ has no effect. Over many generic positions this is a linear system,
+which has a solution if and only if the closure of the loops lets the weights cancel the momentum.
 
-With masses on its links alone a linkage can be balanced if each link reaches the ground by a path of pins (Tepper and
+Masses on the links alone can balance a linkage if each link reaches the ground by a path of pins (Tepper and
 Lowen, General theorems concerning full force balancing of planar linkages by internal mass redistribution, J. Eng. Ind.
 94, 1972); :func:`list_unpinned_links` lists those that do not.
 """
@@ -34,26 +34,26 @@ from synthesis.kinds.balancing.statement.counterweights import Counterweights
 from synthesis.numerics.conic import ConeRows, solve_conic_program
 
 POSITION_COUNT = 97
-"""Number of positions of the linear system: prime, so that no symmetry of a motion coincides with them."""
+"""Number of positions of the linear system. It is prime, so that the positions share no symmetry of the motion."""
 
 MOMENTUM_TOLERANCE = 1e-9
-"""Share of the momentum of all separate parts that is attributed to rounding."""
+"""Momentum that is attributed to rounding, as a share of the summed magnitudes of its parts."""
 
 RANK_TOLERANCE = 1e-11
-"""Singular value, as a share of the largest, below which columns count as dependent."""
+"""Singular value, as a share of the largest, below which columns count as linearly dependent."""
 
 MIN_MOMENT_SHARE = 1e-12
 """Share of the largest first moment below which a weight is omitted."""
 
 MIN_MASS_SHARE = 1e-6
-"""Share of the largest mass below which a weight on a link without a fixed pivot is the program's tolerance."""
+"""Share of the largest mass below which a weight on a link without a fixed pivot is within the solver's tolerance."""
 
 MAX_SETS = 200
-"""Maximum number of sets of links that are tried."""
+"""Maximum number of sets of links to try."""
 
 
 class Weight(NamedTuple):
-    """A counterweight: its link, mass, place in the reference and inertia, in the units of the forces."""
+    """A counterweight: its link, mass, position in the reference pose and inertia, in the units of the forces."""
 
     link: str
     mass: float
@@ -74,10 +74,10 @@ def compute_momentum(machine: Machine, paced: Places) -> tuple[Complex, float]:
 
 
 def find_force_balances(task: Task, requested: Counterweights) -> list[list[Weight]]:
-    """Find sets of counterweights that balance the shaking force; none if no set does.
+    """Find the sets of counterweights that balance the shaking force; the list is empty if no set does.
 
-    One set on links that the client names; else all sets of as few links as possible, those on fixed pivots first,
-    then the lightest.
+    If the client names links, there is one set on these links. Otherwise all sets of as few links as possible are
+    found. Sets on fixed pivots come first, then the lightest.
     """
     machine = strip_loads(task.machine)
     system = _MomentumSystem(machine, _choose_positions(task), requested)
@@ -130,14 +130,14 @@ def list_unpinned_links(mechanism: Mechanism) -> list[str]:
 
 
 def _choose_positions(task: Task) -> Real:
-    """Choose positions over the range, none at its ends."""
+    """Choose positions inside the range of the motion, excluding its ends."""
     # An irrational-looking offset keeps the positions away from ends, middle and other special places.
     shares = (np.arange(POSITION_COUNT) + 0.382) / POSITION_COUNT
     return np.asarray(task.start + (task.end - task.start) * shares)
 
 
 class _MomentumSystem:
-    """The linear system of a machine's momentum at generic positions."""
+    """The linear system by which weights cancel a machine's momentum at generic positions."""
 
     def __init__(self, machine: Machine, at: Real, stated: Counterweights) -> None:
         self.machine, self.stated = machine, stated
@@ -160,7 +160,7 @@ class _MomentumSystem:
         return self._solve_columns(columns, self.total) is not None
 
     def find_weights(self, links: Sequence[str]) -> list[Weight] | None:
-        """Find the weights on these links; None if they cannot balance the force."""
+        """Find the weights on these links; None if no weights on them balance the force."""
         loose = [link for link in links if not is_on_fixed_pivot(self.mechanism, link)]
         columns = [self.turning[link] for link in links]
         masses = dict.fromkeys(links, self.stated.mass)
@@ -170,7 +170,7 @@ class _MomentumSystem:
                 return None
             moments, masses = found
             used = [link for link in links if link not in loose or masses[link] > MIN_MASS_SHARE * max(masses.values())]
-            # Masses at the program's tolerance are dropped if the rest still balances.
+            # Drop masses within the solver's tolerance if the remaining weights still balance the force.
             if len(used) < len(links) and (without := self.find_weights(used)) is not None:
                 return without
         else:
@@ -179,7 +179,7 @@ class _MomentumSystem:
             if solved is None:
                 return None
             moments = dict(zip(links, (solved[0::2] + 1j * solved[1::2]).tolist(), strict=True))
-        # Negligible weights are dropped, except on links whose mass is carried.
+        # Drop negligible weights, except on links whose mass counts in the momentum.
         largest = max((abs(moment) for moment in moments.values()), default=0.0)
         return [
             self._build_weight(link, moment, masses[link])
@@ -194,14 +194,14 @@ class _MomentumSystem:
         return Weight(link, mass, at, self.stated.compute_inertia(mass, self.machine.scale))
 
     def _choose_radius(self, link: str) -> float:
-        """Return the radius of a weight on a link: the given one, or the length of the link."""
+        """Return the radius of a weight on a link: the requested radius, or the length of the link."""
         if self.stated.radius is not None:
             return self.machine.scale * self.stated.radius
         first, second = (complex(self.mechanism.joints[joint]) for joint in self.mechanism.link_line(link))
         return self.machine.scale * abs(second - first)
 
     def _solve_columns(self, columns: Sequence[Real], total: Real) -> Real | None:
-        """Solve for the least coefficients with which the columns cancel a total; None if there are none."""
+        """Return the minimum-norm coefficients with which the columns cancel a total; None if there are none."""
         if not columns:
             return np.zeros(0) if np.abs(total).max() <= MOMENTUM_TOLERANCE * self.size else None
         matrix = np.concatenate(columns, axis=1)
@@ -217,8 +217,8 @@ class _MomentumSystem:
     ) -> tuple[dict[str, complex], dict[str, float]] | None:
         """Find moments and masses of minimum total mass, with no weight farther out than its radius.
 
-        The masses of weights on links without a fixed pivot count in the momentum. The program is a second-order cone
-        program; its answer is corrected by the least change that solves the linear system, to rounding.
+        The masses of weights on links without a fixed pivot count in the momentum. This is a second-order cone program.
+        Its solution is then corrected by the minimum-norm change that solves the linear system to rounding.
         """
         columns = [*(self.turning[link] for link in links), *(self.carried[link][:, None] for link in loose)]
         if (start := self._solve_columns(columns, self.total)) is None:
@@ -229,7 +229,7 @@ class _MomentumSystem:
         _, values, rows = np.linalg.svd(matrix / sizes, full_matrices=False)
         kept = rows[values > RANK_TOLERANCE * values[0]] * sizes  # combinations of x that the positions determine
         count, turned = len(links) + 2 * len(links), 2 * len(links)
-        # Unknowns: moments, masses of the loose links, masses of the others; in units of a mass on a link.
+        # Unknowns: moments, masses of the loose links, masses of the other links, all scaled by ``unit``.
         unit = max(float(np.abs(start).max()), 1e-300)
         order = [*loose, *(link for link in links if link not in loose)]
         equal = np.zeros((len(kept), count))
@@ -250,7 +250,7 @@ class _MomentumSystem:
         )
         if solution.status != "solved":
             return None
-        # The cone program is only accurate to its tolerance; the next step removes the residual.
+        # The cone program is only accurate to the solver's tolerance: the next step removes the residual.
         near = unit * solution.x
         x = near[: turned + len(loose)]
         x = x + np.linalg.lstsq(kept, kept @ (start - x), rcond=None)[0]

@@ -1,8 +1,8 @@
 """Counterweights that minimize the objective, with a lower bound for all permitted weights.
 
-The program is solved on a few positions of a dense grid; positions at which the answer exceeds the promised level
-are added (cutting planes), until no relevant excess remains. All of it is linear algebra on the
-:mod:`effects`: no mechanism is driven again before the verification.
+The program is solved on a few positions of a dense grid. Positions at which the solution exceeds the promised level
+are added (cutting planes) until no relevant excess remains. Every step is linear algebra on the quantities of
+:mod:`effects`: the mechanism is not driven again before the verification.
 """
 
 from __future__ import annotations
@@ -25,34 +25,35 @@ GRID_SIZE = 2880
 """Number of positions of the motion at which peaks and means are evaluated."""
 
 INITIAL_POSITIONS, MAX_ADDED_PEAKS = 72, 6
-"""Number of grid positions of the first program, and of peaks added per quantity and round."""
+"""Number of grid positions of the first program, and maximum number of peaks added per quantity and round."""
 
 MAX_ROUNDS = 10
 """Maximum number of programs solved."""
 
 GRID_TOLERANCE = 1e-4
-"""Share of the value by which the grid may exceed the program when nothing more is added."""
+"""Excess of the value on the grid over that of the program, as a share, up to which no positions are added."""
 
 CAP_TOLERANCE = 1e-6
-"""Share of a cap by which the grid may exceed it, a few times the solver's tolerance."""
+"""Permitted excess over a cap on the grid, as a share of the cap: a few times the solver's tolerance."""
 
 CAP_SENSITIVITY = 10.0
 """Maximum ratio of the value's shortfall below the bound to the share by which a cap is exceeded. The bound holds for
 weights that keep the cap; it is lowered by this amount."""
 
 DUAL_TOLERANCE = 1e-7
-"""Possible error of the solver as a share of the dual value, and of the objective's sum of weights: the bound is
+"""Possible error of the solver, as a share of the dual value plus the sum of the objective's weights. The bound is
 reduced by it."""
 
 NEGLIGIBLE_SHARE = 1e-9
-"""Negligible mass of a weight as a share of the linkage's, and negligible effect of a parameter."""
+"""Mass of a weight, as a share of the linkage's mass, that is negligible; also the negligible effect of a parameter."""
 
 ZERO_TOLERANCE = 1e-12
-"""Peak of a quantity as a share of its changes, below which it is zero without weights and cannot be reduced."""
+"""Peak of a quantity, as a share of its changes by the weights, below which it is zero without weights and cannot be
+reduced."""
 
 
 class Setting(NamedTuple):
-    """The program of a task: its quantities in units of their unbalanced values, and the units of parameters."""
+    """The program of a task: its quantities in units of their unbalanced values, and the units of its parameters."""
 
     links: list[str]
     levels: list[Level]
@@ -62,9 +63,9 @@ class Setting(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """The weights, the bound, and the positions of the last program by quantity; or the ``violated`` caps.
+    """The best weights, the lower bound, and the positions of the last program by quantity; or the ``violated`` caps.
 
-    A violated cap comes with the share by which it would have to be raised.
+    Each violated cap is given with the share by which it would have to be raised.
     """
 
     weights: list[Weight]
@@ -90,7 +91,7 @@ def build_setting(problem: BalancingProblem, task: Task) -> Setting:
     ------
     NothingToReduce
         If a quantity in the objective is zero.
-    Undetermined
+    UndeterminedForces
         If the quantities are known at no position.
     """
     machine, stated = task.machine, problem.counterweights
@@ -104,17 +105,17 @@ def build_setting(problem: BalancingProblem, task: Task) -> Setting:
     known = np.isfinite(np.concatenate([part.fixed[None] for parts in found.values() for part in parts])).all(axis=0)
     if not known.any():
         raise UndeterminedForces
-    # Mass and size of the linkage scale all parameters to about one.
+    # The linkage's mass and size are the units of the parameters.
     mass = sum(float(part.mass) for part in machine.bodies.values()) + sum(map(float, machine.pin_masses.values()))
     places = np.array([scale * complex(z) for z in mechanism.joints.values()])
     size = float(np.abs(places[:, None] - places).max())
-    # Parameters are scaled by the linkage's mass and size, so that the program's numbers are near one.
+    # Scaled parameters keep the program's numbers near one.
     units = np.tile([mass, mass * size, mass * size, mass * size**2], len(links))
     levels = []
     for name, weight, cap in _list_counted(problem):
         mean = problem.objective.norm == "rms"
         scaled = [LinearQuantity(part.fixed[known], units[:, None] * part.by[:, known]) for part in found[name]]
-        # With means in the objective, a cap still applies to the peak: it is a level of its own.
+        # If the objective uses means, a cap still applies to the peak, which then is a level of its own.
         for of_mean, own_weight, own_cap in (
             (False, 0.0 if mean else weight, cap),
             (True, weight if mean else 0.0, None),
@@ -132,7 +133,7 @@ def build_setting(problem: BalancingProblem, task: Task) -> Setting:
 
 
 def _list_counted(problem: BalancingProblem) -> list[tuple[str, float, float | None]]:
-    """List the quantities with their weights and caps."""
+    """List the counted quantities with their weights in the objective and their caps."""
     objective, caps = problem.objective, problem.caps
     listed: list[tuple[str, float, float | None]] = [
         (name, getattr(objective, name), getattr(caps, name)) for name in ("shaking_force", "shaking_moment", "drive")
@@ -156,7 +157,7 @@ def _build_limits(
             most = min(most, math.pi * areal * (scale * stated.max_disc_radius) ** 2)
     reach = 1.0 if stated.reach is None else scale * stated.reach / size
     gyration = math.inf if stated.max_gyration is None else scale * stated.max_gyration / size
-    reach = min(reach, gyration)  # no weight is nearer to its joint, by its gyration, than its centre
+    reach = min(reach, gyration)  # the radius of gyration about the joint is at least the centre's distance
     counts = np.zeros(PARAMETER_COUNT * count)
     for level in levels:
         for part in level.values:
@@ -179,7 +180,7 @@ def find_minimum(setting: Setting, task: Task) -> Minimum:
     used = {
         level.name: np.unique(np.linspace(0, count - 1, INITIAL_POSITIONS).astype(int)).tolist() for level in levels
     }
-    # Scale of the objective: its value without counterweights.
+    # The objective's value without counterweights is its scale.
     weighed = sum(level.weight for level in levels)
     bound, best, least = 0.0, None, math.inf
     for _ in range(MAX_ROUNDS):
@@ -189,7 +190,7 @@ def find_minimum(setting: Setting, task: Task) -> Minimum:
         if found.solution.status != "solved":
             break
         dual = found.solution.dual
-        # The solver's tolerance may make the dual value too large: subtract it.
+        # Subtract the solver's tolerance, by which the dual value may be too large.
         bound = max(bound, dual - DUAL_TOLERANCE * (abs(dual) + weighed))
         parameters = _move_inside(setting, found.parameters)
         reached = [level.evaluate_positions(parameters) for level in levels]
@@ -198,7 +199,7 @@ def find_minimum(setting: Setting, task: Task) -> Minimum:
             (float(of.max()) / level.cap - 1.0 for level, of in zip(levels, reached, strict=True) if level.cap),
             default=0.0,
         )
-        # Only weights that keep all caps are answers; the best one over all rounds is kept.
+        # Only weights that keep all caps are answers. Keep the best of all rounds.
         if beyond <= CAP_TOLERANCE and value < least:
             best, least = parameters, value
         if beyond <= CAP_TOLERANCE and value - bound <= GRID_TOLERANCE * max(value, NEGLIGIBLE_SHARE * weighed):
@@ -207,7 +208,7 @@ def find_minimum(setting: Setting, task: Task) -> Minimum:
             break
     if best is None:
         return Minimum([], bound, np.zeros(len(setting.units)), used, {}, solved=False)
-    # Weights slightly over a cap may fall below the bound: that is not a contradiction.
+    # Weights slightly above a cap may have a value below the bound: that is not a contradiction.
     if bound <= least * (1.0 + CAP_SENSITIVITY * CAP_TOLERANCE):
         bound = min(bound, least)
     return Minimum(_build_weights(setting, task, best), bound, best, used, {}, solved=True)
@@ -231,7 +232,7 @@ def _add_peaks(levels: list[Level], reached: list[Real], found: Answer, used: di
 
 
 def _find_violated_caps(setting: Setting, used: dict[str, list[int]]) -> Minimum:
-    """Find the caps that cannot be kept: those reached at the smallest common raise."""
+    """Find the caps that cannot be kept: those that are active at the smallest feasible common raise."""
     found = find_best_weights(setting.levels, setting.limits, used, relaxed=True)
     share = found.excess
     caps = {}
@@ -242,9 +243,10 @@ def _find_violated_caps(setting: Setting, used: dict[str, list[int]]) -> Minimum
 
 
 def _move_inside(setting: Setting, parameters: Real) -> Real:
-    """Move the parameters inside the feasible set, which the solver keeps to a tolerance; drop masses without effect.
+    """Move the parameters into the feasible set, which the solver satisfies only to its tolerance.
 
-    If neither mass nor inertia of a weight counts, its mass is the least for its first moment.
+    Masses without effect are dropped: if neither the mass nor the inertia of a weight counts, it gets the minimum mass
+    for its first moment.
     """
     limits, inside = setting.limits, parameters.copy()
     for n in range(len(setting.links)):
@@ -259,7 +261,7 @@ def _move_inside(setting: Setting, parameters: Real) -> Real:
         own = mass, *first, max(least, inertia) if limits.turning[n] else least
         inside[PARAMETER_COUNT * n : PARAMETER_COUNT * (n + 1)] = own
     whole = float(inside[0::PARAMETER_COUNT].sum())
-    # A smaller weight of the same shape is in the set too.
+    # Scaling a feasible weight down keeps it feasible.
     return inside * (limits.total / whole) if whole > limits.total else inside
 
 
@@ -269,7 +271,7 @@ def _read_parameters(parameters: Real, n: int) -> tuple[float, Real, float]:
 
 
 def _build_weights(setting: Setting, task: Task, parameters: Real) -> list[Weight]:
-    """Convert the parameters to weights at places of the reference."""
+    """Convert the parameters to weights with positions in the reference pose."""
     mechanism, scale = task.machine.mechanism, task.machine.scale
     own = setting.units * parameters
     listed = []

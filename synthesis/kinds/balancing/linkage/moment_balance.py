@@ -1,9 +1,10 @@
 """A fourbar that exerts neither force nor moment on its frame, by geared counter-inertias (Berkof).
 
-A coupler whose centre of gravity lies on the line of its pins, with k² = r b for r and b its distances from them, has
-the momentum and the angular momentum of two masses at the pins (Norton, *Design of Machinery*, 12.12-12.17). They
-then belong to the cranks, and with the force balanced each crank is a body that turns about its centre of gravity: its
-angular momentum I φ' is cancelled by an equal inertia that gears turn in the opposite direction,
+Let the coupler's centre of gravity lie on the line of its pins, at the distances r and b from them, and let its radius
+of gyration satisfy k² = r b. The coupler then has the momentum and the angular momentum of two masses at the pins
+(Norton, *Design of Machinery*, 12.12-12.17), which can be counted as parts of the cranks. With the force balanced, each
+crank turns about its own centre of gravity. Its angular momentum I φ' is cancelled by an equal inertia that gears turn
+in the opposite direction:
 
     m2 r2 = m3 b a2/a3,  m4 r4 = m3 r a4/a3,  I2 = m2 (k2² + r2² + a2 r2),  I4 = m4 (k4² + r4² + a4 r4)
 
@@ -27,7 +28,8 @@ from synthesis.kinds.balancing.linkage.motion import list_moving_links
 from synthesis.kinds.balancing.statement.counterweights import Counterweights
 
 INLINE_TOLERANCE = 1e-9
-"""Share of the coupler by which its centre of gravity may be off the line of its pins: rounding."""
+"""Distance of the coupler's centre of gravity from the line of its pins, as a share of the coupler's length, that is
+attributed to rounding."""
 
 
 class NoMomentBalance(ValueError):
@@ -35,7 +37,7 @@ class NoMomentBalance(ValueError):
 
 
 class GearedBalance(NamedTuple):
-    """The mechanism with the links of its gears, the weights, and the inertias of those links by name."""
+    """The mechanism with the geared links, the counterweights, and the inertias of the geared links by name."""
 
     mechanism: Mechanism
     weights: list[Weight]
@@ -48,7 +50,8 @@ def find_moment_balance(machine: Machine, requested: Counterweights) -> GearedBa
     Raises
     ------
     NoMomentBalance
-        For another linkage, for a coupler whose centre of gravity is off its line, or for masses elsewhere on it.
+        If the linkage is no fourbar, if the coupler's centre of gravity is off the line of its pins, or if there are
+        masses elsewhere on it.
     """
     mechanism, scale = machine.mechanism, machine.scale
     crank, coupler, output = _identify_fourbar(mechanism)
@@ -73,7 +76,7 @@ def find_moment_balance(machine: Machine, requested: Counterweights) -> GearedBa
         pivot, pin = place[pivots[link]], place[pins[link]]
         carried = float(machine.pin_masses.get(pins[link], np.zeros(()))) + shares[link] * float(whole.mass)
         own = machine.bodies.get(link, make_body(0.0))
-        # The coupler's share at the pin and the crank's own moment are cancelled by one weight.
+        # One weight cancels both the coupler's share at the pin and the crank's own first moment.
         moment = -carried * (pin - pivot) - float(own.mass) * (complex(own.cg) - pivot)
         turned = [own]
         if abs(moment) > 0.0:
@@ -112,10 +115,10 @@ def _identify_fourbar(mechanism: Mechanism) -> tuple[str, str, str]:
 def _balance_coupler(
     coupler: str, known: Body, a: complex, b: complex, requested: Counterweights, scale: float
 ) -> list[Weight]:
-    """Make the coupler equivalent to two masses at its pins: by nothing, an inertia, or a mass midway between them.
+    """Make the coupler equivalent to two masses at its pins, if necessary by an inertia or a mass midway between them.
 
-    It is equivalent to two masses if m r b − I = 0. A mass at a pin does not change this, a mass in the middle adds
-    a²/4 per unit, and an inertia subtracts its own.
+    The coupler is equivalent to two masses if m r b − I = 0. A mass at a pin does not change this expression. A mass in
+    the middle adds a²/4 per unit mass. An inertia subtracts its own value.
     """
     mass, own = float(known.mass), float(known.inertia)
     if mass == 0.0 and own == 0.0:
@@ -124,13 +127,13 @@ def _balance_coupler(
     if abs(along.imag) > INLINE_TOLERANCE:
         raise NoMomentBalance("the coupler's centre of gravity is off the line of its pins")
     square = abs(b - a) ** 2
-    # m r b − I: positive if inertia is missing, negative if mass is.
+    # m r b − I is positive if inertia is missing and negative if mass is missing.
     surplus = mass * along.real * (1.0 - along.real) * square - own
     if abs(surplus) <= INLINE_TOLERANCE * (own + mass * square):
         return []
     if surplus > 0.0:
         return [Weight(coupler, 0.0, a, surplus)]
-    # A disc in the middle has an inertia of its own: m a²/4 − m² I(1) must equal the deficit.
+    # A disc in the middle also has an inertia of its own, so that m a²/4 − m² I(1) must equal the deficit.
     quarter, own_of_one = 0.25 * square, requested.compute_inertia(1.0, scale)
     root = quarter**2 + 4.0 * own_of_one * surplus
     if root < 0.0:

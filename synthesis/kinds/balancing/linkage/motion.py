@@ -12,14 +12,14 @@ from synthesis.kinds.balancing.problem import BalancingProblem
 
 
 def build_balancing_task(problem: BalancingProblem) -> Task:
-    """Build the machine of a consistent problem, and its motion."""
+    """Build the machine and the motion of a problem without contradictions."""
     assert problem.mechanism is not None
     assert problem.dynamics is not None
     return build_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
 
 
 def strip_loads(machine: Machine) -> Machine:
-    """Return the machine with its masses alone: without weight, loads or friction."""
+    """Return the machine with its masses only, without gravity, loads or friction."""
     return replace(machine, gravity=0j, loads=(), friction=Friction())
 
 

@@ -1,10 +1,11 @@
 """The best choice among places on a circle: holes to drill with their depths, or weights to fix.
 
-Every place of a plane contributes one of a few vectors, or nothing. The search finds the choices whose sum is nearest
-to a target, for each number of places used. The places are split in two halves; all sums of each half are listed, and
-for every sum of one half the nearest of the other is looked up in a tree (Horowitz and Sahni's two lists for subset
-sums, J. ACM 21, 1974, in the plane). That covers (10⁵)² choices exactly. Further places are branched on, and a branch
-is pruned if its continuous optimum, the distance to the zonotope of all sums of its places, is no better.
+Every place of a plane contributes one of a few vectors, or nothing. For each number of places used, the search finds
+the choices whose sum is nearest to a target. The places are split into two halves, and all sums of each half are
+listed. For every sum of one half, the nearest partner in the other half is looked up in a tree. This is the method of
+two lists of Horowitz and Sahni (subset sums, J. ACM 21, 1974), applied to the plane. It covers (10⁵)² choices exactly.
+The search branches on further places. A branch is pruned if its continuous optimum, the distance to the zonotope of
+all sums of its places, is no better than the best choice found.
 """
 
 from __future__ import annotations
@@ -19,32 +20,32 @@ from scipy.spatial import cKDTree
 from kinematics.arrays import Complex, Real
 
 DIRECTIONS = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False))
-"""Directions along which sums are bounded."""
+"""Unit vectors of the directions along which sums are bounded."""
 
 MAX_GROUP_SUMS = 100_000
-"""Maximum number of listed sums of a half."""
+"""Maximum number of sums listed for one half."""
 
 MAX_QUERIES = 3_000_000
 """Maximum number of look-ups, which take some seconds; beyond it the result is not proven to be the best."""
 
 
 BRANCH_COST = 50
-"""Cost of one branch node, in look-ups."""
+"""Cost of one branch node, as an equivalent number of look-ups."""
 
 
 MIN_REACH_SHARE = 1e-9
-"""Greatest sum of the places, as a share of the target, below which the choice makes no noticeable difference."""
+"""Maximum possible sum of the places, as a share of the target, below which every choice leaves the same residual."""
 
 
 class Choice(NamedTuple):
-    """The places used, each with the number of its contribution, and the sum's difference to the target."""
+    """The places used, each with the index of its contribution, and the difference of their sum from the target."""
 
     picks: dict[int, int]
     residual: complex
 
 
 class ChoiceFront(NamedTuple):
-    """The best choices, each with more places and a smaller residual than the one before; and the proven bound."""
+    """The best choices, each with more places and a smaller residual than the one before, and the proven bound."""
 
     choices: list[Choice]
     bound: float
@@ -52,7 +53,7 @@ class ChoiceFront(NamedTuple):
 
 
 class _Sums(NamedTuple):
-    """All sums of a group of places, with the places used and the choice as a number in mixed base."""
+    """All sums of a group of places, with the number of places used and each choice encoded in a mixed base."""
 
     values: Complex
     used: NDArray[np.int64]
@@ -60,7 +61,7 @@ class _Sums(NamedTuple):
 
 
 def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> ChoiceFront:
-    """Find the choices nearest to a target for every number of places used.
+    """Find, for every number of places used, the choice with the sum nearest to a target.
 
     Parameters
     ----------
@@ -76,11 +77,10 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
         return ChoiceFront([Choice({}, target)], _measure_distance(target, _compute_support(places)), proved=False)
     first, second, rest = _split_places(range(len(places)), places, most)
     if rest:
-        # Not all places can be listed: list those that reach farthest towards the target.
-        # Component of each place's contributions along the target.
+        # Not all places can be listed: list those with the largest component along the target.
         reach = [float((target.conjugate() * place).real.max()) for place in places]
         first, second, rest = _split_places(sorted(range(len(places)), key=lambda n: -reach[n]), places, most)
-    # All sums of both halves; the target minus a sum of one is looked up in the other.
+    # For each sum of one half, the target minus this sum is looked up among the sums of the other half.
     head, tail = _list_sums([places[n] for n in first], most), _list_sums([places[n] for n in second], most)
     trees = {
         used: (cKDTree(np.stack([tail.values.real, tail.values.imag], axis=1)[at]), at)
@@ -94,7 +94,7 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
     for branch in _list_branches([len(places[n]) for n in rest], most):
         picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
         left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
-        # A branch uses at least these places: prune it if no more places already come nearer than it ever can.
+        # A branch uses at least the picked places: prune it if a choice of no more places is nearer than its bound.
         few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
         if query_count > MAX_QUERIES:
             complete = False
@@ -115,8 +115,8 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
                 query_count += len(points)
                 n = int(np.argmin(distance))
                 if count not in best or distance[n] < abs(best[count].residual):
-                    # Residuals are recomputed from the picks in a fixed order, free of the sums' accumulated
-                    # rounding.
+                    # Recompute the residual from the picks in a fixed order, without the accumulated rounding of
+                    # the sums.
                     picks = picked | _decode_picks(first, places, int(head.codes[at[n]]))
                     picks |= _decode_picks(second, places, int(tail.codes[among[index[n]]]))
                     reached = sum(complex(places[k][pick]) for k, pick in sorted(picks.items()))
@@ -130,7 +130,7 @@ def find_best_choices(target: complex, places: Sequence[Complex], most: int) -> 
 
 
 def _split_places(order: Sequence[int], places: Sequence[Complex], most: int) -> tuple[list[int], list[int], list[int]]:
-    """Split the places into two halves and the rest; each place goes to the smaller half while it fits."""
+    """Split the places into two halves and the rest; each place joins the smaller half while its sums fit."""
     halves: tuple[list[int], list[int]] = ([], [])
     rest: list[int] = []
     for n in order:
@@ -144,7 +144,7 @@ def _split_places(order: Sequence[int], places: Sequence[Complex], most: int) ->
 
 
 def _list_branches(sizes: Sequence[int], most: int) -> Iterator[tuple[int, ...]]:
-    """Yield contributions of places, 0 for none, with at most ``most`` used; the last place varies fastest."""
+    """Yield the contribution of each place, 0 for none, with at most ``most`` places used; the last varies fastest."""
     if not sizes:
         yield ()
         return
@@ -154,7 +154,7 @@ def _list_branches(sizes: Sequence[int], most: int) -> Iterator[tuple[int, ...]]
 
 
 def _count_choices(sizes: Sequence[int], most: int) -> int:
-    """Count the choices of places with these numbers of contributions, of which at most ``most`` are used."""
+    """Count the choices of at most ``most`` places, given each place's number of contributions."""
     counts = [1]
     for size in sizes:
         counts = [
@@ -186,16 +186,16 @@ def _decode_picks(group: Sequence[int], places: Sequence[Complex], code: int) ->
 
 
 def _bound_distance(target: complex, places: Sequence[Complex]) -> float:
-    """Return the distance from a target to the convex hull of all sums of the places: no choice comes nearer.
+    """Return a lower bound of the distance from a target to every sum of the places.
 
-    The largest distance along any direction is a lower bound; the directions of the sides of a zonotope of segments
-    from 0 give its distance except at its corners.
+    The bound refers to the convex hull of all sums: the largest distance along any direction is a lower bound. For a
+    zonotope of segments from 0, the directions normal to its sides give the exact distance, except at its corners.
     """
     return _measure_distance(target, _compute_support(places))
 
 
 def _compute_support(places: Sequence[Complex]) -> Real:
-    """Return the maximum reach of the sums along each of the directions."""
+    """Return the maximum of the sums along each of :data:`DIRECTIONS` (the support function)."""
     support = np.zeros(len(DIRECTIONS))
     for contributions in places:
         support += np.maximum(0.0, (np.conj(DIRECTIONS)[:, None] * contributions).real.max(axis=1))

@@ -1,4 +1,4 @@
-"""Rotors: their unbalance from the given data, and the masses that balance them."""
+"""Balancing of rotors: the unbalance from the given data, and the masses that correct it."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from synthesis.model.linkage.input_motion import RAD_PER_S
 
 
 class Rotor(NamedTuple):
-    """The unbalances of a rotor in masses times length units, and their places along the axis."""
+    """The unbalances of a rotor (mass times length unit), and their positions along the axis."""
 
     moments: Complex
     z: Real
 
 
 class Weight(NamedTuple):
-    """A mass at an angle (degrees) and a radius; ``moment`` is the unbalance that it adds, also if it is removed."""
+    """A mass at an angle (degrees) and a radius, added or removed; ``moment`` is the unbalance that results from it."""
 
     plane: int
     moment: complex
@@ -37,7 +37,7 @@ class Weight(NamedTuple):
 
 
 class Balancing(NamedTuple):
-    """The weights of all planes, the unbalance that each plane needs, and the proven bound of its residual."""
+    """The weights of all planes, the unbalance that each plane needs, and the proven lower bound of its residual."""
 
     weights: list[Weight]
     needed: Complex
@@ -46,7 +46,7 @@ class Balancing(NamedTuple):
 
 
 def get_length_scale(problem: BalancingProblem) -> float:
-    """Return the length unit in the unit of the forces."""
+    """Return the length unit, expressed in the length unit of the forces."""
     return METRES_PER_UNIT[problem.length_unit] if problem.units == "si" else 1.0
 
 
@@ -76,8 +76,8 @@ def compute_coefficients(problem: BalancingProblem) -> Complex:
 
 
 def balance_rotor(problem: BalancingProblem, rotor: Rotor) -> list[Balancing]:
-    """Balance a rotor, the smallest residual first: one way, or the best for each number of places."""
-    # The vectors that the planes must add to cancel force and, with two planes, moment.
+    """Return the corrections of a rotor, the smallest residual first: one, or the best for each number of places."""
+    # The vectors that the planes must add to cancel the force and, with two planes, the moment.
     needed = compute_plane_corrections(rotor.moments, rotor.z, np.array(problem.used_planes))
     stated = problem.correction
     if stated is None or stated.place_choice is None:
@@ -89,7 +89,7 @@ def balance_rotor(problem: BalancingProblem, rotor: Rotor) -> list[Balancing]:
 
 
 def _choose_single(plane: int, moment: complex, correction: Correction | None) -> Weight:
-    """Choose the single mass of a plane."""
+    """Return the single mass of a plane."""
     size, removed = abs(moment), correction is not None and correction.removed
     angle = math.degrees(cmath.phase(-moment if removed else moment))
     if correction is None:
@@ -101,13 +101,13 @@ def _choose_single(plane: int, moment: complex, correction: Correction | None) -
 
 
 def _choose_places(correction: Correction, needed: Complex) -> list[Balancing]:
-    """Choose holes or stock weights of all planes: the Pareto set of places and residual."""
+    """Choose holes or stock weights in all planes: the Pareto set of number of places against residual."""
     placed = correction.place_choice
     assert placed is not None
     sign = -1.0 if correction.holes is not None else 1.0
     directions = placed.directions
     masses = placed.step * np.arange(1, placed.steps + 1) if isinstance(placed, Holes) else np.array(placed.masses)
-    # Of two opposite holes the shallower cancels part of the deeper: one of them is enough.
+    # The shallower of two opposite holes cancels part of the deeper one: one of them is enough.
     opposite = isinstance(placed, Holes)
     axes = _group_opposite(directions) if opposite else [[angle] for angle in directions]
     options = [[(angle, float(mass)) for angle in axis for mass in masses] for axis in axes]
@@ -132,8 +132,8 @@ def _choose_places(correction: Correction, needed: Complex) -> list[Balancing]:
 
 
 def _combine_fronts(chosen: list[ChoiceFront]) -> list[tuple[Choice, ...]]:
-    """Combine the planes' choices to the Pareto set of total places and total residual, the smallest residual first."""
-    # By number of places first, so that one pass finds the front.
+    """Combine the planes' choices into the Pareto set of total places and residual, the smallest residual first."""
+    # Sort by number of places first, so that one pass finds the front.
     combined = sorted(
         itertools.product(*(plane.choices for plane in chosen)),
         key=lambda choices: (sum(len(one.picks) for one in choices), sum(abs(one.residual) for one in choices)),
@@ -149,7 +149,7 @@ def _combine_fronts(chosen: list[ChoiceFront]) -> list[tuple[Choice, ...]]:
 
 
 def _group_opposite(directions: list[float]) -> list[list[float]]:
-    """Group the angles with their opposite ones."""
+    """Group each angle with the opposite angle, if that is present too."""
     axes: dict[float, list[float]] = {}
     for angle in directions:
         axes.setdefault(round(angle % 180.0, 9) % 180.0, []).append(angle)

@@ -101,7 +101,10 @@ class Counterweights(Statement):
         return self
 
     def compute_inertia(self, mass: float, scale: float) -> float:
-        """Return the moment of inertia about the own centre; ``scale`` is the length unit in that of the forces."""
+        """Return the moment of inertia of a mass about its own centre.
+
+        ``scale`` is the length unit, expressed in the length unit of the forces.
+        """
         if self.density is None or self.thickness is None:
             return 0.0
         return mass * mass / (2.0 * math.pi * self.density * scale * self.thickness)

@@ -22,9 +22,9 @@ def find_linkage_errors(
     weights: Counterweights,
     joints: Mapping[str, Iterable[str]],
 ) -> list[tuple[str, str]]:
-    """Return errors of a mechanism, its masses, its motion and its counterweights, by their fields.
+    """Return the errors of a mechanism, its masses, its motion and its counterweights as pairs of field and message.
 
-    ``joints`` are names of joints by the fields that have them.
+    ``joints`` maps each field that names joints to these names.
     """
     mechanism, faults = find_driven_errors(requested, dynamics, unit, motion)
     if mechanism is None:

@@ -22,14 +22,15 @@ from synthesis.model.problem import (
 )
 
 MIN_SEPARATION = 1e-3
-"""Minimum distance of two planes or bearings, as a share of the unbalances' distance from them: nearer ones would carry
-thousands of times the unbalance, with the loss of that many digits."""
+"""Minimum distance between two planes or bearings, as a share of the unbalances' distance from them. Closer planes
+would carry thousands of times the unbalance, with a corresponding loss of digits."""
 
 MAX_LEVELS = 200
-"""Maximum number of steps of a hole, or of weights in stock."""
+"""Maximum number of depth steps of a hole, or of different stock weights."""
 
 INDEPENDENCE_TOLERANCE = 1e-6
-"""Share of the largest response below which that of another plane is rounding: the runs do not distinguish planes."""
+"""Share of the largest response below which the independent response of another plane is rounding, so that the runs do
+not distinguish the planes."""
 
 
 class RotorMass(Statement):
@@ -104,7 +105,7 @@ Places = Annotated[
     | Annotated[Annotated[list[Degrees], Field(min_length=1, max_length=72)], Tag("<angles>")],
     Discriminator(_get_places_tag),
 ]
-"""Angles in the rotor: the number of equally spaced ones from 0° on, or a list."""
+"""Angles in the rotor: a number of equally spaced angles from 0° on, or a list of angles in degrees."""
 
 
 class _PlaceChoice(Statement):
@@ -171,7 +172,7 @@ class Correction(Statement):
 
     @property
     def place_choice(self) -> Holes | Stock | None:
-        """The places, if the correction is a choice among some."""
+        """The requested holes or stock weights; None if the correction is one mass per plane."""
         return self.holes or self.stock
 
 
@@ -216,12 +217,12 @@ class RotorBase(ProblemBase):
 
     @property
     def used_planes(self) -> list[float]:
-        """The planes; two at one place count as one."""
+        """The planes of correction; two planes at one place count as one."""
         return self.planes[:1] if self.planes[0] == self.planes[-1] else self.planes
 
     @property
     def supports(self) -> list[float] | None:
-        """Places of both bearings; None if they are unknown."""
+        """Positions of both bearings along the axis; None if they are unknown."""
         if self.bearings is not None:
             return list(self.bearings)
         if len(self.bearing_readings) == 2:
@@ -230,12 +231,16 @@ class RotorBase(ProblemBase):
 
     @property
     def places(self) -> list[float]:
-        """Places of the unbalances along the axis."""
+        """Positions of the unbalances along the axis."""
         stated = [entry.z for entry in self.masses] + [entry.z for entry in self.bearing_readings]
         return stated or self.used_planes
 
     def find_rotor_errors(self) -> list[Contradiction]:
-        """Return errors: several unbalances or none, planes too close, a grade without speed, uninformative runs."""
+        """Return the errors of the rotor's fields.
+
+        These are several sources of the unbalance or none, planes that are too close, a grade without a speed, and
+        runs with trial weights that do not determine the unbalance.
+        """
         found = []
         stated = [bool(self.masses), bool(self.bearing_readings), self.influence is not None]
         if sum(stated) != 1:
@@ -289,7 +294,7 @@ class RotorBase(ProblemBase):
         norms = [math.sqrt(sum(abs(entry) ** 2 for entry in column)) for column in columns]
         unlike = min(norms) / max(norms) if max(norms) > 0.0 else 0.0
         if planes == 2 and unlike > 0.0:
-            # The sine of the angle between the two columns: zero if the planes respond alike.
+            # The sine of the angle between the two columns is zero if the planes respond alike.
             product = sum(one.conjugate() * other for one, other in zip(*columns, strict=True))
             unlike *= math.sqrt(max(0.0, 1.0 - (abs(product) / (norms[0] * norms[1])) ** 2))
         if not unlike > INDEPENDENCE_TOLERANCE:

@@ -1,8 +1,8 @@
-"""Verification of a balanced linkage: drive the answer, and sum the forces on its frame from all joint reactions.
+"""Verification of a balanced linkage: drive the answer, and sum all joint reactions on its frame.
 
-Nothing is taken from the search: mechanism and block are read from the answer as ``POST /v1/analyses`` would read them,
-and the shaking force is the sum of all joint forces on the frame (Newton and Euler link by link), while the
-counterweights come from momentum.
+Nothing is taken from the search. Mechanism and dynamics block are read from the answer as ``POST /v1/analyses`` would
+read them. The shaking force is the sum of all joint forces on the frame (Newton's and Euler's equations link by link),
+whereas the solver derives the counterweights from the momentum.
 """
 
 from __future__ import annotations
@@ -40,18 +40,20 @@ from synthesis.model.linkage.answer import Skeleton
 from synthesis.verification.checks import check_error
 
 POSITION_COUNT = 720
-"""Number of positions over the motion at which the forces are measured; the motion's steps if these are more."""
+"""Minimum number of positions at which the forces are measured; the motion's own steps are used if there are more."""
 
 BALANCE_TOLERANCE = 1e-9
-"""Share of the unbalanced peak that is attributed to rounding."""
+"""Remaining peak, as a share of the unbalanced one, that is attributed to rounding."""
 
 GRAM_MILLIMETRES = 1e6
 """g·mm in a kg·m."""
 
 
 class Shaking(NamedTuple):
-    """Peaks over the positions at which the reactions are known; ``parts`` are the peaks of force and moment if the
-    contributions of all parts of the linkage added up in magnitude.
+    """Peaks over the positions at which the reactions are known.
+
+    ``parts`` are the peaks of force and moment that would result if the contributions of all bodies added up in
+    magnitude: the scale of rounding.
     """
 
     force: float
@@ -61,7 +63,7 @@ class Shaking(NamedTuple):
 
 
 def measure_shaking(machine: Machine, task: Task, count: int, acceleration: float) -> Shaking:
-    """Measure the peaks of a machine's own inertia over the motion of a task."""
+    """Measure the peaks of the forces due to a machine's own inertia over the motion of a task."""
     now = place_machine(strip_loads(machine), task.list_positions(count), task.speed, acceleration)
     found = compute_reactions(strip_loads(machine), now)
     # Positions at which the reactions are determined.
@@ -76,7 +78,7 @@ def measure_shaking(machine: Machine, task: Task, count: int, acceleration: floa
 
 
 def _sum_parts(machine: Machine, now: Places) -> tuple[Real, Real]:
-    """Compute Σ m |r''|, and Σ m |r − c| |r''| + I |φ''|, over positions."""
+    """Compute Σ m |r''| and Σ (m |r − c| |r''| + I |φ''|) over positions, the scales of force and moment."""
     forces, moments = np.zeros(now.smooth.shape), np.zeros(now.smooth.shape)
     moved = [(part.mass, now.point(link, part.cg)) for link, part in machine.bodies.items()]
     moved += [(mass, now.joints[joint]) for joint, mass in machine.pin_masses.items()]
@@ -100,7 +102,7 @@ def verify_linkage(
     answer, block = build_answer(problem, task, mechanism, weights, inertias)
     machine = build_answer_machine(problem, answer, block)
     count = max(POSITION_COUNT, problem.motion.steps)
-    # Also with an acceleration that matters as much as the speed: exact balance must hold in any motion.
+    # Test with an acceleration as influential as the speed, too: an exact balance must hold in any motion.
     accelerated = task.acceleration + _compute_matching_acceleration(task)
     first, last = (measure_shaking(one, task, count, task.acceleration) for one in (task.machine, machine))
     before, after = (measure_shaking(one, task, count, accelerated) for one in (task.machine, machine))
@@ -148,21 +150,21 @@ def build_answer(
     weights: Sequence[Weight],
     inertias: dict[str, float],
 ) -> tuple[BalancedLinkage, JsonObject]:
-    """Build mechanism and block of an answer."""
+    """Build the mechanism and the dynamics block of an answer."""
     assert problem.dynamics is not None
     block = with_inertias(add_weights(task.machine, problem.dynamics, weights), inertias)
     return BalancedLinkage(skeleton=Skeleton.model_validate(describe_skeleton(mechanism))), block
 
 
 def build_answer_machine(problem: BalancingProblem, mechanism: BalancedLinkage, block: JsonObject) -> Machine:
-    """Build the machine of an answer's mechanism and block, read like in an analysis."""
-    # Read only what the answer states, not the solver's own data.
+    """Build the machine from the mechanism and the dynamics block of an answer, read as in an analysis."""
+    # Use only the data of the answer, not the solver's own.
     built = GivenSkeleton.model_validate(mechanism.model_dump()).build_mechanism()
     return build_machine(DynamicsBlock.model_validate(block), built, problem.length_unit)[0]
 
 
 def _compute_matching_acceleration(task: Task) -> float:
-    """Return the acceleration of the input with an effect of the size of the speed's."""
+    """Return the input acceleration that has an effect of the same size as the speed."""
     # A slide's range sets the length scale of its acceleration.
     if task.machine.mechanism.has_slide_input:
         return task.speed**2 / abs(task.end - task.start) if task.end != task.start else 1.0
@@ -178,7 +180,7 @@ def _compute_moment_share(after: Shaking, before: Shaking) -> float:
 
 
 def _compute_share(part: float, whole: float, parts: float, parts_after: float) -> float:
-    """Return the remaining share of a whole; if the whole is rounding of its parts, the share of the parts."""
+    """Return the remaining share of a whole; if the whole is only rounding of its parts, the share of the parts."""
     if whole <= BALANCE_TOLERANCE * parts or whole == 0.0:
         whole = max(parts, parts_after)
     return part / whole if whole > 0.0 else part

@@ -1,7 +1,7 @@
-"""Verification of minimizing counterweights: drive the answer over the grid; its value must be just above the bound.
+"""Verification of optimal counterweights: drive the answer over the grid and compare its value with the lower bound.
 
-The forces are the reactions of the answer's own linkage, solved joint by joint, while the program used momentum and
-energy. The sizes of the weights are measured on the answer as well.
+The forces are the reactions of the answer's own linkage, solved joint by joint, whereas the program used momentum and
+energy. The sizes of the weights are measured on the answer, too.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from synthesis.model.dimension import LENGTH, MASS
 from synthesis.verification.checks import check_error, check_maximum, check_minimum
 
 MAX_GAP = 5e-3
-"""Maximum share of the value by which the bound may be below it."""
+"""Maximum gap between the value and the lower bound, as a share of the value."""
 
 GYRATION_TOLERANCE = 1e-3
 """Share by which a radius of gyration may exceed its limit."""
@@ -37,24 +37,24 @@ CAP_TOLERANCE = 2e-6
 """Share by which a peak may exceed its cap."""
 
 NEGLIGIBLE_VALUE = 1e-6
-"""Value, as a share of the objective's sum of weights, below which it is negligible and a gap has no meaning."""
+"""Value of the objective, as a share of its sum of weights, below which it is negligible and a gap has no meaning."""
 
 ROUTE_TOLERANCE = 1e-6
-"""Share of the peak by which two routes to a force may differ."""
+"""Permitted difference of a force computed by two independent methods, as a share of its peak."""
 
 SIZE_TOLERANCE = 1e-9
-"""Share by which masses and places may exceed their limits by rounding."""
+"""Excess of masses and positions over their limits, as a share, that is attributed to rounding."""
 
 
 class MeasuredForces(NamedTuple):
-    """Reactions over the grid; peaks of shaking force and moment and of the drive, and differences to a balance."""
+    """Reactions over the grid; peaks of shaking force, shaking moment and drive; their differences from a balance."""
 
     found: Reactions
     peaks: list[float]
     differences: list[float]
 
     def list_series(self, name: str) -> list[Real]:
-        """Return the magnitudes of a quantity at positions at which it is known."""
+        """Return the magnitudes of a quantity at the positions at which it is known."""
         known = self.found.solved
         if name == "shaking_force":
             return [np.abs(self.found.shaking_force[known])]
@@ -165,7 +165,7 @@ def _check_counterweights(
 
 
 def _compare_levels(problem: BalancingProblem, before: MeasuredForces, after: MeasuredForces) -> list[ForceLevel]:
-    """Compare each quantity in the objective or with a cap; a cap is on the peak, also if means count."""
+    """Compare each quantity in the objective or with a cap; a cap limits the peak even if the objective uses means."""
     objective, caps = problem.objective, problem.caps
     names = ["shaking_force", "shaking_moment", "drive"]
     listed = [(name, getattr(objective, name), getattr(caps, name)) for name in names]
@@ -185,10 +185,10 @@ def _compare_levels(problem: BalancingProblem, before: MeasuredForces, after: Me
 
 
 def _measure_forces(machine: Machine, task: Task, grid: Real) -> MeasuredForces:
-    """Measure a machine over the grid, by both routes."""
+    """Measure a machine over the grid by both methods: joint reactions, and momentum with energy."""
     now = place_machine(machine, grid, task.speed, task.acceleration)
     found = compute_reactions(machine, now)
-    # The second route: momentum and energy instead of joint reactions.
+    # The second method uses momentum and energy instead of joint reactions.
     check = compute_balance(machine, now, pace_machine(machine, grid), found.rubbing)
     known = found.solved
     pairs = (

@@ -1,8 +1,8 @@
-"""Verification of a balanced rotor: its masses rotated as points in space, and the forces that hold it.
+"""Verification of a balanced rotor: its masses are rotated as points in space, and the bearing forces are computed.
 
 None of the solver's formulas is used. Every unbalance and every correction of the answer is a point mass on a
-circle; at positions over a turn the forces at both bearings are solved from Newton's and Euler's equations of the whole
-rotor, and are compared with those before the correction.
+circle. At positions over a turn, the forces at both bearings are solved from Newton's and Euler's equations of the
+whole rotor, and are compared with those before the correction.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ POSITION_COUNT = 72
 """Number of positions over a turn at which the forces are solved."""
 
 BALANCE_TOLERANCE = 1e-10
-"""Share of the forces of all separate unbalances that is attributed to rounding."""
+"""Remaining force, as a share of the summed forces of the single unbalances, that is attributed to rounding."""
 
 VIBRATION_TOLERANCE = 1e-9
 """Share of the readings up to which predicted ones count as zero."""
@@ -44,7 +44,7 @@ GRAM_MILLIMETRES = 1e6
 
 
 class RotatingForces(NamedTuple):
-    """Maxima over a turn: of the total force, of its moment about the first plane, and of the bearing forces."""
+    """Maxima over a turn of the total force, of its moment about the first plane, and of the bearing forces."""
 
     force: float
     moment: float
@@ -52,7 +52,7 @@ class RotatingForces(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Point masses on circles: mass times radius, angle (radians) and place along the axis."""
+    """Point masses on circles: mass times radius, angle (radians) and position along the axis."""
 
     moments: Real
     angles: Real
@@ -144,7 +144,7 @@ def _build_mechanism(problem: BalancingProblem, rotor: Rotor, found: Balancing, 
 
 
 def _list_points(mechanism: RotorMechanism, written: float, *, corrected: bool) -> Points:
-    """List the point masses of a rotor of the answer, in masses times length units."""
+    """List the point masses of the answer's rotor, mass times length unit."""
     rows = [(entry.unbalance, entry.angle, entry.z) for entry in mechanism.unbalances]
     if corrected:
         # Removed material acts against its direction.
@@ -158,7 +158,7 @@ def _list_points(mechanism: RotorMechanism, written: float, *, corrected: bool) 
 def _rotate_points(
     points: Points, about: float, supports: list[float] | None, unit: float, speed: float
 ) -> RotatingForces:
-    """Rotate the rotor over a turn: m a of its points in space, and the forces that hold it."""
+    """Rotate the rotor over a turn, and compute the forces that its points' accelerations require at the bearings."""
     turn = 2.0 * np.pi * np.arange(POSITION_COUNT) / POSITION_COUNT
     angles = points.angles + turn[:, None]
     pull = unit * speed**2 * points.moments
@@ -167,7 +167,7 @@ def _rotate_points(
     moment = ((points.z - about)[:, None] * forces).sum(axis=1)
     held: list[float] = []
     if supports is not None:
-        # Two bearings: force and moment equilibrium give both of their forces.
+        # Force and moment equilibrium determine the forces of both bearings.
         levers = np.array([[1.0, 1.0], [supports[0] - about, supports[1] - about]])
         carried = np.linalg.solve(levers, np.stack([whole, moment], axis=1))
         held = np.hypot(carried[..., 0], carried[..., 1]).max(axis=0).tolist()
@@ -177,13 +177,13 @@ def _rotate_points(
 
 
 def _check_residuals(problem: BalancingProblem, before: Points, after: Points, left: list[float]) -> list[Check]:
-    """Check the residuals in the planes; single masses must leave nothing, and no force on the bearings."""
+    """Check the residuals in the planes; single masses must leave no residual and no force on the bearings."""
     planes = problem.used_planes
     measured = _rotate_points(after, planes[0], planes if len(planes) == 2 else None, 1.0, 1.0)
-    # With one plane only the force can be balanced.
+    # A single plane can only balance the force.
     found = measured.supports or [measured.force]
     parts = _sum_magnitudes(before, planes)
-    # Compare the residuals found by turning with those reported.
+    # Compare the residuals measured on the rotating rotor with the reported ones.
     off = max(abs(one - other) for one, other in zip(found, left, strict=True))
     checks = [check_error("residual", _compute_share(off, parts), BALANCE_TOLERANCE)]
     if _is_continuous(problem) and len(planes) == 2 and problem.supports is not None:
@@ -199,20 +199,20 @@ def _check_residuals(problem: BalancingProblem, before: Points, after: Points, l
 
 
 def _sum_magnitudes(points: Points, supports: list[float]) -> float:
-    """Sum the magnitudes of each point's own bearing forces, the scale for their sum."""
+    """Sum the magnitudes of the bearing forces of the single points: the scale of rounding of their vector sum."""
     if len(supports) == 1:
         return float(np.abs(points.moments).sum())
     near, far = supports
-    # Lever rule: the shares of both bearings.
+    # The lever rule gives the shares of both bearings.
     shares = np.abs((points.z - near) / (far - near)) + np.abs((points.z - far) / (far - near))
     return float((np.abs(points.moments) * shares).sum())
 
 
 def _compute_grades(problem: BalancingProblem, *rotors: Points) -> list[float] | None:
-    """Compute e ω in mm/s of rotors; None without mass and speed.
+    """Compute the balance grades e ω of rotors, mm/s; None without mass and speed.
 
-    The unbalance is the sum of those in the bearings' planes (the tolerance planes of ISO 21940-11), if these are
-    known, so that a couple left by a single plane counts too.
+    If the bearings are known, the unbalance is the sum of those in the bearings' planes (the tolerance planes of
+    ISO 21940-11), so that a couple left by a single plane of correction counts, too.
     """
     if problem.rotor_mass is None or problem.rpm is None:
         return None

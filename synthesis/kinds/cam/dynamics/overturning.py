@@ -1,10 +1,11 @@
 """The moment that tilts a translating follower in its guide, and the slide offset that minimizes it.
 
-Under a flat face the contact force F acts at the distance v − e from the slide's axis: the moment is F (v − e). A
-roller is pushed sideways with F tan φ = F (v − e)/(d + s), and the lever of that to the guide shrinks with the
-displacement: F (v − e)(l − s)/(d + s), l the overhang at s = 0. F acts along the motion and depends neither on the
-offset e nor on the size of the cam. So the moment of a face is convex in e, and a limit M on that of a roller requires
-d ≥ |v − e| |F| (l − s)/M − s, like a pressure angle whose tangent is M/(|F| (l − s)).
+Under a flat face, the contact force F acts at the distance v − e from the slide's axis, and the moment is F (v − e). A
+roller is pushed sideways with F tan φ = F (v − e)/(d + s). The lever arm of this force about the guide shrinks with the
+displacement, so that the moment is F (v − e)(l − s)/(d + s), with l the overhang at s = 0. F is the component along the
+motion and depends neither on the offset e nor on the size of the cam. The moment of a face is therefore convex in e. A
+limit M on the moment of a roller requires d ≥ |v − e| |F| (l − s)/M − s, like a pressure angle with the tangent
+M/(|F| (l − s)).
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.statement.followers import TranslatingRoller
 
 OFFSET_TOLERANCE = 1e-11
-"""Accuracy of the offset of a face, as a share of the range of its contact."""
+"""Accuracy of the optimal offset of a face, as a share of the range that its contact sweeps."""
 
 
 def compute_overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
-    """Compute the greatest moment on a finished cam's slide; None without a slide, a lever or forces."""
+    """Compute the maximum moment on a finished cam's slide; None without a slide, a lever arm or forces."""
     if problem.dynamics is None:
         return None
     running, follower, program = press_follower(problem, cam.program).running, cam.follower, cam.program
@@ -51,7 +52,7 @@ def compute_overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
 
 
 def make_moment_share(problem: CamProblem, program: Program) -> Callable[[Motion], Real] | None:
-    """Return F (l − s)/M for a roller with limited moment: |v − e|/(d + s) may not exceed its inverse."""
+    """Return the function F (l − s)/M for a roller with limited moment; |v − e|/(d + s) may not exceed its inverse."""
     limit, follower = problem.limits.overturning_moment, problem.follower
     if limit is None or not isinstance(follower, TranslatingRoller) or follower.overhang is None:
         return None
@@ -60,13 +61,13 @@ def make_moment_share(problem: CamProblem, program: Program) -> Callable[[Motion
 
 
 def find_face_offset(problem: CamProblem, program: Program) -> float:
-    """Find the face offset of minimum overturning moment; it is global, as the moment is convex in the offset."""
+    """Find the face offset of minimum overturning moment, which is global, since the moment is convex in the offset."""
     running, v = press_follower(problem, program).running, program.peaks[1]
 
     def moment(offset: float) -> float:
         return find_extremes(lambda at: running.force(at) * (program.motion(at).v - offset), program.breaks).largest
 
-    # The contact sweeps between these velocities; the best offset lies between them.
+    # The contact sweeps the range between these velocities, which contains the best offset.
     span = v.greatest - v.least
     best = minimize_scalar(
         moment, bounds=(v.least, v.greatest), method="bounded", options={"xatol": OFFSET_TOLERANCE * span}

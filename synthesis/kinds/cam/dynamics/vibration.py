@@ -1,9 +1,9 @@
 """Vibration of a follower: a mass on the elastic train through which the cam drives it.
 
-The return spring only adds to the train's stiffness; it is the train between cam and mass that vibrates, at
-ω_n = √((k + k_s)/m). If ω_n is less than ten times the cam's speed, the program's harmonics excite it markedly. τ,
-the natural period over the time of a move, determines how much vibration is left in the dwell after the move
-(Norton §15.4; Koster, *Vibrations of Cam Mechanisms*, 1974).
+The train between cam and mass vibrates; the return spring only adds to its stiffness. The natural frequency is
+ω_n = √((k + k_s)/m). If ω_n is less than ten times the cam's speed, the harmonics of the program excite the vibration
+markedly. The ratio τ of the natural period to the duration of a move determines the residual vibration in the dwell
+after the move (Norton §15.4; Koster, *Vibrations of Cam Mechanisms*, 1974).
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.statement.segments import Dwell
 
 MIN_FREQUENCY_RATIO = 1.0
-"""Natural frequency over cam speed below which the mass hardly follows the cam, and its motion is not reported."""
+"""Ratio of natural frequency to cam speed below which the mass hardly follows the cam, so that its motion is not
+reported."""
 
 
 def compute_train_vibration(problem: CamProblem, running: RunningCam) -> tuple[TrainVibration | None, str | None]:
@@ -35,7 +36,7 @@ def compute_train_vibration(problem: CamProblem, running: RunningCam) -> tuple[T
     natural = math.sqrt((stiffness + load.spring_rate) / load.mass)
     train = FollowerTrain(load.mass, stiffness, 2.0 * ratio * load.mass * natural, load.spring_rate, load.preload)
     response = Response(running.program, train, running.speed)
-    # Without any move the period is compared with the whole turn.
+    # Without any move, compare the period with the whole turn.
     moves = [segment.angle for segment, rests in _list_segments(problem, running) if not rests]
     # Natural period over the duration of the shortest move.
     tau = TURN / natural * running.speed / min(moves, default=TURN)
@@ -45,7 +46,7 @@ def compute_train_vibration(problem: CamProblem, running: RunningCam) -> tuple[T
     if steady:
         force = response.contact_force
         least, greatest = float(force.min()) / arm, float(force.max()) / arm
-        # Free vibration only shows in dwells.
+        # Free vibration is only observable in dwells.
         at_rest = [
             x for x, (_, rests) in zip(response.residual(), _list_segments(problem, running), strict=True) if rests
         ]

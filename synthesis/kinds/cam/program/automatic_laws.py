@@ -1,7 +1,7 @@
-"""Laws of automatic segments: those that fit their neighbours, and among them the best by the criterion.
+"""Laws of automatic segments: the best by the criterion among the laws that fit the neighbouring segments.
 
-A law fits if its velocity and acceleration are those of its neighbours. For a row of neighbouring automatic segments
-the best laws are a shortest path over the states at the joints (dynamic programming).
+A law fits if its velocity and acceleration at both ends agree with those of the neighbours. For a row of automatic
+segments, the best laws form a shortest path over the states at the joints (dynamic programming).
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from synthesis.kinds.cam.statement.segment_ends import END_RATES, State, compute
 from synthesis.kinds.cam.statement.segments import Move
 
 JOINT_TOLERANCE = 1e-9
-"""Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
+"""Maximum jump at a joint, as a share of the segments' own rates, for which an automatic law fits."""
 
 SAMPLE_COUNT = 721
-"""Points of a segment at which laws are compared by a criterion without a closed form; the choice needs no more."""
+"""Number of points of a segment at which laws are compared by a criterion without a closed form."""
 
 
 def choose_laws(
@@ -36,15 +36,15 @@ def choose_laws(
     segments: list[Segment | None],
     names: list[str],
 ) -> str | None:
-    """Fill in the automatic segments: the best path over laws that fit at the joints, for each row of neighbours.
+    """Fill in the automatic segments with the best laws that fit at the joints, for each row of neighbours.
 
-    Returns the reason if no law fits a segment.
+    Return the reason if no law fits a segment, otherwise None.
     """
     count = len(segments)
     auto = [isinstance(s, Move) and s.law == "auto" for s in problem.segments]
     if not any(auto):
         return None
-    # Start behind a segment that is not automatic, so that no row of neighbours is split at the turn's end.
+    # Start after a segment that is not automatic, so that no row of neighbours is split at the end of the turn.
     first = next((k for k in range(count) if not auto[k]), 0)
     row: list[int] = []
     # The sentinel −1 closes the last row.
@@ -74,7 +74,7 @@ def _choose_row(
     closed = len(row) == count
     enter = (0.0, 0.0) if before is None or closed else before[1][1:]
     leave = (0.0, 0.0) if after is None or closed else after[0][1:]
-    # Paths to a joint's state: for every state only the cheapest one is kept (dynamic programming).
+    # Only the cheapest path to each state at a joint is kept (dynamic programming).
     paths: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {enter: (0.0, ())}
     for n, k in enumerate(row):
         angle, (start, end) = math.radians(problem.segments[k].angle), heights[k]
@@ -97,7 +97,7 @@ def _choose_row(
                 ):
                     continue
                 total = _add_segment_cost(problem, cost, segment)
-                # States are equal if they agree to seven digits: laws give a few discrete ones, the
+                # States count as equal if they agree to seven digits. Named laws give a few discrete states, the
                 # polynomial any other.
                 key = (round(at_end[0] / unit, 7), round(at_end[1] * angle / unit, 7))
                 if key not in following or total < following[key][0]:
@@ -118,7 +118,7 @@ def _list_candidates(
     """List the named laws, and the polynomial through both end states; with v and a at start and end."""
     candidates = []
     for name in END_RATES:
-        # These two have velocity or acceleration jumps at their ends, so that they are only used on request.
+        # These laws have velocity or acceleration jumps at their ends, so that they are only used on request.
         if name in ("constant_acceleration", "constant_velocity"):
             continue
         first, last = compute_law_ends(name, angle, start, end)
@@ -142,7 +142,7 @@ def _is_within_limits(problem: CamProblem, segment: Segment) -> bool:
 
 
 def _add_segment_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
-    """Return the criterion's value with one more segment: the greater peak, or the sum of squares."""
+    """Return the criterion's value with one more segment: the larger peak, or the sum of squares."""
     name = problem.minimize
     kind, _, of = name.partition("_")
     at = np.linspace(0.0, segment.angle, SAMPLE_COUNT)
@@ -162,10 +162,10 @@ def _add_segment_cost(problem: CamProblem, cost: float, segment: Segment) -> flo
 
 
 def _estimate_radius(problem: CamProblem, motion: Motion) -> float:
-    """Estimate the radius that a segment alone requires, accurately enough to compare laws."""
+    """Estimate, accurately enough to compare laws, the radius that a segment requires by itself."""
     if isinstance(problem.follower, TranslatingFlat):
         return float(np.max(-motion.s - motion.a))
-    # R or d ≥ |v|/tan φ, less the displacement for a radial cam.
+    # R or d ≥ |v|/tan φ, minus the displacement for a radial cam.
     tangent = math.tan(math.radians(problem.limits.pressure_angle))
     barrel = isinstance(problem.follower, BarrelRoller)
     return float(np.max(np.abs(motion.v) / tangent - (0.0 if barrel else motion.s)))

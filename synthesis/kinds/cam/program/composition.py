@@ -1,9 +1,9 @@
-"""The motion program of a problem: given segments, automatic laws, optimal runs, and the program's optimality.
+"""Composition of the motion program: given segments, automatic laws, optimal runs, and the program's optimality.
 
 Segments with a given law, dwells and polynomials are used unchanged. Automatic segments get laws that fit their
 neighbours (:mod:`synthesis.kinds.cam.program.automatic_laws`). The remaining open segments form runs of neighbouring
-optimal segments. Each run is one convex program; if the criterion belongs to the whole cam (size, contact force), one
-program covers all runs.
+optimal segments. Each run is a convex program of its own, unless the criterion belongs to the whole cam (size, contact
+force): then one program covers all runs.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ from synthesis.kinds.cam.statement.segments import Dwell, Move, Polynomial
 from synthesis.model.kind import Progress
 
 LOOSE_LIMIT_FACTOR = 1e6
-"""Limits on a derivative that exceed a unit lift over a unit angle by this factor do not bind on any grid here and
-would only spoil the program's scaling; verification checks them all the same."""
+"""Factor on the derivative of a unit lift over a unit angle beyond which a limit is omitted from the program. Such a
+limit is not active on any grid used here and would only spoil the scaling. The verification checks it nevertheless."""
 
 
 def ignore_progress(fraction: float, message: str) -> None:
@@ -69,7 +69,7 @@ def ignore_progress(fraction: float, message: str) -> None:
 
 @dataclass(frozen=True)
 class _GridProgress:
-    """Reports the convex programs of several runs as a fraction of the whole work."""
+    """Reports the convex programs of several runs as fractions of the whole work."""
 
     progress: Progress
     reach: tuple[float, float]
@@ -80,7 +80,7 @@ class _GridProgress:
         start, end = self.reach
 
         def report_grid(steps: int) -> None:
-            # Every run is solved on a coarse and then on a fine grid, of about equal effort.
+            # Every run is solved on a coarse grid and then on a fine grid; both count as equal effort.
             share = (run + (0.5 if steps > GRID_STEP_COUNTS[0] else 0.0)) / self.runs
             which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
             self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
@@ -90,10 +90,10 @@ class _GridProgress:
 
 @dataclass(frozen=True)
 class Composition:
-    """A finished program, and the criterion's value and bound.
+    """A finished program, and the criterion's value and lower bound.
 
-    ``names`` are the segments' laws. ``bound`` is None if no segment was optimized over all motions; ``scope`` names
-    the motions for which the bound holds.
+    ``names`` are the laws of the segments. ``bound`` is None if no segment was optimized over all motions. ``scope``
+    describes the motions for which the bound holds.
     """
 
     program: Program
@@ -105,7 +105,7 @@ class Composition:
 
 @dataclass(frozen=True)
 class NoProgram:
-    """The reason why no program keeps the limits; ``proven`` if that is certain."""
+    """The reason why no program was found that keeps the limits; ``proven`` is true if none exists."""
 
     reason: str
     proven: bool
@@ -119,8 +119,8 @@ def compose(
 ) -> Composition | NoProgram:
     """Compose the best program of a problem without contradictions.
 
-    ``grids`` is as for the convex program of least size; ``progress`` is called before each program, with fractions
-    within ``reach``.
+    ``grids`` are the numbers of steps of the convex program for minimum size. ``progress`` is called before each
+    program, with fractions within ``reach``.
     """
     heights = problem.program.heights()
     ends = problem.program.compute_ends()
@@ -135,7 +135,7 @@ def compose(
         elif isinstance(stated, Polynomial):
             conditions = [PolynomialCondition(*condition) for condition in problem.program.convert_conditions(stated)]
             segments.append(build_polynomial_segment(angle, conditions))
-        # No ends: the motion is optimal or automatic, and is filled in below.
+        # A segment without end states is optimal or automatic, and is filled in below.
         elif pair is None:
             segments.append(None)
         else:
@@ -158,14 +158,14 @@ def compose(
 
 
 def _find_runs(problem: CamProblem, segments: Sequence[Segment | None]) -> list[list[int]]:
-    """Find rows of neighbouring open segments; single segments for the torque, which is convex for one move only."""
+    """Find rows of neighbouring open segments; single segments for the torque, which is only convex for one move."""
     count = len(segments)
     open_ = [k for k in range(count) if segments[k] is None]
     if problem.minimize.endswith("torque"):
         return [[k] for k in open_]
     if len(open_) == count:
         return [open_]
-    # Start behind a closed segment, so that a run over the turn's end stays in one row.
+    # Start after a closed segment, so that a run across the end of the turn stays in one row.
     first = next(k for k in range(count) if segments[k] is not None)
     rows: list[list[int]] = []
     joined = False
@@ -199,9 +199,9 @@ def _build_run(
         Condition.fix_derivative(total, 0, heights[row[-1]][1]),
     ]
     demands: list[Demand] = []
-    # The whole turn is open: the derivatives agree at its start and end, but have no given values.
+    # If the whole turn is open, the derivatives agree at its start and end but have no given values.
     if len(row) == count:
-        # At a reversal the velocity is zero: fixing it keeps the motion from overshooting the position.
+        # At a reversal, fix the velocity at zero, so that the motion does not overshoot the position.
         conditions += [Condition(((total, i, 1.0), (0.0, i, -1.0)), 0.0) for i in range(1, continuity + 1)]
         if _is_reversal(heights, row[-1], row[0]):
             conditions.append(Condition.fix_derivative(0.0, 1, 0.0))
@@ -210,7 +210,7 @@ def _build_run(
             pair = ends[neighbour]
             state = (0.0, 0.0, 0.0) if pair is None else pair[side]
             segment = segments[neighbour]
-            # A neighbour that is open itself belongs to another run (torque): they meet at rest.
+            # An open neighbour belongs to another run (criterion torque): both runs join at rest.
             jerk = 0.0
             if segment is not None:
                 jerk = float(segment.pieces.motion(segment.angle if side else 0.0, before=bool(side)).j)
@@ -266,7 +266,7 @@ def _solve_runs(
     elif problem.minimize == "peak_contact_force":
         load, speed = build_follower_load(problem)
         weights = load.spring_rate, load.damping * speed, load.mass * speed**2
-        # The preload is a variable of the program, so that it is taken out of the given segments' forces.
+        # The preload is a variable of the program: subtract it from the forces of the given segments.
         loads = [_find_range(segment, lambda m: load.force(m, speed) - load.preload) for segment in given]
         rest = (min(low for low, _ in loads), max(high for _, high in loads)) if loads else None
         results = [
@@ -310,7 +310,7 @@ def _solve_runs(
 
 def _cut(motion: KnotMotion, start: float, end: float, angle: float) -> Segment:
     """Cut the part of a motion between two of its knots, as a segment."""
-    # Knots stand on the segment ends except for rounding, so the nearest ones are taken and the last is set
+    # Knots coincide with the segment ends except for rounding: take the nearest knots, and set the last time
     # exactly.
     first, last = (int(np.abs(motion.times - at).argmin()) for at in (start, end))
     times = motion.times[first : last + 1] - motion.times[first]
@@ -329,7 +329,7 @@ def _find_range(segment: Segment, function: Callable[[Motion], np.ndarray]) -> t
 def _solve_smallest(
     problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], on_grid: OnGrid
 ) -> Optimum | NoMotion:
-    """Solve for motion and size together, for a translating follower."""
+    """Solve for the motion and the size of a translating follower's cam in one program."""
     limits = problem.limits
     if isinstance(problem.follower, TranslatingFlat):
         rest = None
@@ -342,19 +342,19 @@ def _solve_smallest(
     rising = math.tan(math.radians(limits.pressure_angle))
     falling = math.tan(math.radians(limits.falling_pressure_angle))
     rest_rows = []
-    # The given segments do not change: of each only the tightest value of either side's condition matters.
+    # Given segments do not change: only the tightest value of each side's condition matters.
     for segment in given:
         for k, sign in ((rising, 1), (falling, -1)):
             rest_rows.append((k, sign, _find_range(segment, _make_pressure_margin(k, sign))[0]))
     lowest = min(min(pair) for pair in problem.program.heights())
-    # The lowest height with zero velocity bounds the size even if all given segments are higher.
+    # The lowest position, with zero velocity, bounds the size even if all given segments are higher.
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
     return minimize_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, on_grid=on_grid)
 
 
 def _make_pressure_margin(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:
-    """Return s tan φ ∓ v, the margin that a pressure angle leaves, as a function of the motion."""
+    """Return the function s tan φ ∓ v of the motion: the margin to the limit on the pressure angle."""
     return lambda motion: np.asarray(tangent * motion.s - sign * motion.v)
 
 
@@ -384,10 +384,10 @@ def _bound_criterion(
 
     if kind == "peak":
         peaks = [max(map(abs, _find_range(segment, evaluate_integrand))) for segment in given]
-        # The bound never exceeds the value reached: rounding in the multipliers could otherwise make the gap
+        # Clip the bound at the value, because rounding in the multipliers could otherwise make the gap
         # negative.
         return min(max([each.bound for each in best] + peaks), value), scope
-    # Mean squares add up by angle: the bounds of the runs, and the given segments exactly.
+    # Mean squares add up weighted by angle: bounds for the runs, exact values for the given segments.
     square = sum(
         each.bound**2 * sum(program.segments[k].angle for k in row) for each, row in zip(best, rows, strict=True)
     )

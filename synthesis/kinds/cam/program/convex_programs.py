@@ -1,18 +1,18 @@
-"""Convex programs over motions by knots: formulation, and solution by cvxpy and Clarabel.
+"""Convex programs over motions given by knots: formulation, and solution by cvxpy and Clarabel.
 
 The unknowns are the states (s, s′, …) of one or more motions at their knots, a constant control u = dᵐs/dtᵐ on each
-step, and a few scalars z that the motions share (the peak to be minimized; preload; the position of the follower).
-Everything is linear in them except the objective:
+step, and a few scalars z that the motions share (the peak to be minimized, the preload, the position of the follower).
+Everything is linear in the unknowns except the objective:
 
     minimize z₀, or a Euclidean norm of some scalars, or ∫ (dᵖs/dtᵖ)² dt
 
 subject to Taylor's formula from knot to knot (:mod:`synthesis.kinds.cam.program.knots`), conditions, limits and
-demands. A limit or demand is imposed on every Bernstein coefficient of its left-hand side, on every step, and so holds
-between the knots as well. The equations couple neighbouring knots only, so that the interior-point solver factors a
-band, and the time grows in proportion to the number of knots. Each motion runs over 0 ≤ t ≤ 1 here, scaled to a unit
-lift by the caller.
+demands. A limit or demand is imposed on every Bernstein coefficient of its left-hand side on every step, so that it
+holds between the knots as well. The equations only couple neighbouring knots, so that the interior-point solver
+factors a banded matrix, and the time grows in proportion to the number of knots. Each motion runs over 0 ≤ t ≤ 1; the
+caller scales it to a unit lift.
 
-The multipliers of the solution are kept: :mod:`synthesis.kinds.cam.program.dual_bound` derives from them a bound for
+The multipliers of the solution are kept. From them, :mod:`synthesis.kinds.cam.program.dual_bound` derives a bound for
 all motions, with knots or without.
 """
 
@@ -29,31 +29,31 @@ from synthesis.kinds.cam.program.knots import KnotMotion, integrate_control
 from synthesis.numerics.convex import import_cvxpy, solve_convex_program
 
 RANK_TOLERANCE = 1e-12
-"""Singular values below this share of the greatest count as zero: they come from redundant conditions."""
+"""Share of the largest singular value below which others count as zero: they come from redundant conditions."""
 
 VARIABLE_SCALE = 0.1
-"""Factor 0.1ⁱ of the i-th derivative in the program: the derivatives of a unit lift grow at about the inverse rate."""
+"""Base of the scale 0.1ⁱ of the i-th derivative in the program: derivatives of a unit lift grow about as 10ⁱ."""
 
 KNOT_TOLERANCE = 1e-9
-"""Time difference up to which a time coincides with a knot."""
+"""Maximum difference of a time from a knot with which it coincides."""
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Σ coefficient · dᵒʳᵈᵉʳs/dt at given knots = value. Most have one term."""
+    """The equation Σ coefficient · dᵒʳᵈᵉʳs/dt at given knots = value. Most conditions have one term."""
 
     terms: tuple[tuple[float, int, float], ...]
     value: float
 
     @classmethod
     def fix_derivative(cls, time: float, order: int, value: float) -> Condition:
-        """Return the condition that the derivative of an order has a value at a time."""
+        """Return the condition that the derivative of the given order has a value at a time."""
         return cls(((time, order, 1.0),), value)
 
 
 @dataclass(frozen=True)
 class Limit:
-    """|dᵒʳᵈᵉʳs/dt| ≤ constant + gain · z₀ throughout the motion."""
+    """The inequality |dᵒʳᵈᵉʳs/dt| ≤ constant + gain · z₀ throughout the motion."""
 
     order: int
     constant: float
@@ -62,7 +62,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Demand:
-    """Σ weights[i] dⁱs/dtⁱ + Σ gains[j] z_j ≤ right for start ≤ t ≤ end."""
+    """The inequality Σ weights[i] dⁱs/dtⁱ + Σ gains[j] z_j ≤ right for start ≤ t ≤ end."""
 
     weights: tuple[float, ...]
     right: float
@@ -100,20 +100,20 @@ class Block:
 
 @dataclass(frozen=True)
 class ConvexProgram:
-    """Motions, shared scalars and the objective to minimize.
+    """A convex program: motions, shared scalars and the objective to minimize.
 
     Parameters
     ----------
     blocks : tuple of Block
         The motions.
     objective : {"scalar", "norm", "rms"}
-        z₀; the Euclidean norm of all scalars; the root of the mean of (dᵖs/dtᵖ)² of the only motion.
+        z₀, the Euclidean norm of all scalars, or the root mean square of dᵖs/dtᵖ of the only motion.
     rms_order : int
         p of the objective "rms".
     rows, right : float64, shapes (k, scalars) and (k,)
-        rows @ z ≤ right: constraints on the scalars alone.
+        Constraints on the scalars alone: rows @ z ≤ right.
     box : float64, shape (scalars,)
-        Bounds of |z|; the first is not bounded if the objective is a scalar.
+        Bounds of |z|. The first scalar is not bounded if it is the objective.
     """
 
     blocks: tuple[Block, ...]
@@ -126,7 +126,7 @@ class ConvexProgram:
 
 @dataclass(frozen=True)
 class Weights:
-    """Multipliers of one inequality: at its knots, and of its inner coefficients on the steps between them."""
+    """Multipliers of one inequality, at its knots and for its inner coefficients on the steps between them."""
 
     knots: Real
     steps: Real
@@ -143,7 +143,7 @@ class Multipliers:
 
 @dataclass(frozen=True)
 class Solution:
-    """The result of the solver: exact motions, scalars, and the multipliers."""
+    """The result of the solver: exact motions, scalars and multipliers."""
 
     motions: tuple[KnotMotion, ...]
     scalars: Real
@@ -162,8 +162,8 @@ def solve(program: ConvexProgram) -> Solution | None:
     Returns
     -------
     Solution or None
-        Motions that are integrated from their control and meet every condition to rounding. None if the program
-        has no solution on its grid, or the solver finds none.
+        Its motions are integrated from their controls and satisfy every condition to rounding. None if the program
+        has no solution on its grid, or if the solver finds none.
     """
     cp = import_cvxpy()
 
@@ -189,7 +189,7 @@ def solve(program: ConvexProgram) -> Solution | None:
         cost = cp.norm(z, 2)
     else:
         cost = models[0].build_mean_square(program.rms_order)
-        # The solver minimizes the scaled derivative; the multipliers belong to the unscaled one.
+        # The solver minimizes the scaled derivative, but the multipliers refer to the unscaled one.
         worth = float(models[0].scale[program.rms_order]) ** 2
     if not solve_convex_program(cost, constraints):
         return None
@@ -242,7 +242,7 @@ class BlockModel:
         return sum(cp.sum_squares(cp.multiply(root, part)) for part in parts)
 
     def motion(self) -> KnotMotion:
-        """Return the solved motion, corrected by the least change of its control that meets every condition."""
+        """Return the solved motion, corrected by the smallest change of its control that meets every condition."""
         block = self.block
         m = block.size
         start = np.asarray(self.states.value[0], np.float64) * self.scale[:m]
@@ -250,7 +250,7 @@ class BlockModel:
         return correct_motion(block, start, control)
 
     def multipliers(self, worth: float) -> Multipliers:
-        """Return the multipliers in unscaled units; the objective is ``worth`` times that of the scaled variables."""
+        """Return the multipliers in unscaled units; the objective is ``worth`` times that in scaled variables."""
         conditions = [
             worth * float(np.asarray(constraint.dual_value)) * self._condition_scale(condition)
             for constraint, condition in zip(self.conditions, self.block.conditions, strict=True)
@@ -260,7 +260,7 @@ class BlockModel:
         return Multipliers(np.array(conditions), tuple(limits), tuple(demands))
 
     def _condition_scale(self, condition: Condition) -> float:
-        """Return the scale of a condition: the solver gets it in the scaled variable of its highest order."""
+        """Return the scale of a condition, which the solver gets in the scaled variable of its highest order."""
         return 1.0 / float(self.scale[max(order for _, order, _ in condition.terms)])
 
     def _build_condition(self, condition: Condition) -> Any:
@@ -294,7 +294,7 @@ class BlockModel:
         steps = slice(knots.start, knots.stop - 1)
         scale = float(self.scale[demand.order])
         step = np.diff(self.block.times)[steps]
-        # The lowest derivative involved has the highest degree, which decides the number of coefficients.
+        # The lowest derivative involved has the highest degree, which determines the number of coefficients.
         least = next((i for i, weight in enumerate(demand.weights) if weight), 0)
         degree = self.block.size - least
         inner: list[Any] = [0.0] * max(degree - 1, 0)
@@ -305,7 +305,7 @@ class BlockModel:
             total = total + (weight * self.scale[order] / scale) * self.states[knots, order]
             for j in range(1, degree):
                 for up in range(min(j, self.block.size - order) + 1):
-                    # Bernstein coefficient j of the derivative's Taylor expansion on the step.
+                    # This is Bernstein coefficient j of the derivative's Taylor expansion on the step.
                     share = weight * math.comb(j, up) / math.comb(degree, up) / math.factorial(up)
                     factor = share * step**up * self.scale[order + up] / scale
                     high = order + up
@@ -320,7 +320,7 @@ class BlockModel:
 
 @dataclass(frozen=True)
 class _Inequality:
-    """The constraints of one demand, in units of ``scale``."""
+    """The constraints of one limit or demand, in units of ``scale``."""
 
     knots: Any
     inner: list[Any]
@@ -340,8 +340,8 @@ class _Inequality:
 def correct_motion(block: Block, start: Real, control: Real) -> KnotMotion:
     """Integrate a control from a start state so that all conditions hold to rounding.
 
-    The conditions are linear in start and control; their residual is removed by the least change, measured by the
-    control's mean square and by the start state.
+    The conditions are linear in the start state and the control. Their residual is removed by the smallest change,
+    measured by the mean square of the control and by the start state.
     """
     m, step = block.size, np.diff(block.times)
     root = np.sqrt(step)
@@ -357,7 +357,7 @@ def correct_motion(block: Block, start: Real, control: Real) -> KnotMotion:
             left, right = block.times[knot] - block.times[:knot], block.times[knot] - block.times[1 : knot + 1]
             row[m : m + knot] += coefficient * (left**power - right**power) / math.factorial(power)
     scaled = matrix.copy()
-    # In the variables control·√step the norm of the change is the control's mean square.
+    # In the variables control·√step, the squared norm of the change is its mean square over time.
     scaled[:, m:] /= root
     motion = integrate_control(block.times, start, control)
     # The second pass removes the rounding of the first.

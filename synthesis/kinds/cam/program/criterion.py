@@ -1,4 +1,4 @@
-"""The criterion of a motion program: a peak or a root mean square of a derivative, a torque or the contact force."""
+"""Criteria of a motion program: the peak or root mean square of a derivative or a torque, or the peak contact force."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from synthesis.kinds.cam.follower_loads import (
 from synthesis.kinds.cam.problem import CamProblem
 
 DERIVATIVE_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
-"""Orders of the derivatives that criteria and limits name."""
+"""Orders of the derivatives by their names in criteria and limits."""
 
 
 def evaluate_criterion(problem: CamProblem, program: Program) -> float:
@@ -37,7 +37,7 @@ def evaluate_criterion(problem: CamProblem, program: Program) -> float:
         least = force.least
         if top_rpm is not None:
             least = min(least, find_weakest_contact(program, load, top_rpm).force)
-        # A free preload raises the force everywhere by the same amount, until the minimum reaches the
+        # A free preload raises the force at all angles by the same amount, until the minimum equals the
         # required force.
         return force.greatest + compute_extra_preload(problem, least)
     if kind == "peak":
@@ -55,7 +55,7 @@ def compute_root_mean_square(program: Program, function: Callable[[Motion], np.n
 
 
 def integrate_square(pieces: Pieces, function: Callable[[Motion], np.ndarray]) -> float:
-    """Return ∫ f² by Gauss's rule on every piece: exact for polynomials, accurate to rounding for laws with sines."""
+    """Return ∫ f² by Gauss quadrature on every piece: exact for polynomials, accurate to rounding for sinusoids."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     half = 0.5 * np.diff(pieces.start)
     values = function(pieces.motion(pieces.start[:-1, None] + half[:, None] * (nodes + 1.0)))
@@ -63,19 +63,19 @@ def integrate_square(pieces: Pieces, function: Callable[[Motion], np.ndarray]) -
 
 
 def scale_least_force(problem: CamProblem) -> float:
-    """Return the required minimum contact force, on an arm as a torque."""
+    """Return the required minimum contact force; for an arm, its torque about the pivot."""
     assert problem.dynamics is not None
     return problem.dynamics.least_force * get_arm_length(problem)
 
 
 def scale_preload(problem: CamProblem) -> float | None:
-    """Return the given preload, on an arm as a torque; None if it is free."""
+    """Return the given preload, for an arm its torque about the pivot; None if the preload is free."""
     assert problem.dynamics is not None
     return None if problem.dynamics.preload is None else problem.dynamics.preload * get_arm_length(problem)
 
 
 def compute_extra_preload(problem: CamProblem, least: float) -> float:
-    """Return the amount by which a free preload raises a force of minimum ``least``; it is never negative."""
+    """Return the non-negative amount by which a free preload raises a force with the minimum ``least``."""
     return max(scale_least_force(problem) - least, 0.0) if scale_preload(problem) is None else 0.0
 
 

@@ -1,9 +1,9 @@
-"""The cost of a criterion: derivatives of an optimal motion whose peaks are many times a plain law's.
+"""Warnings about the cost of a criterion: peaks of derivatives many times as high as those of a plain law.
 
-The motion of minimum peak acceleration jumps from one acceleration to another, so that its jerk is bounded only by the
-grid on which it was found; the motion of minimum peak velocity has jumps of that kind in its velocity. Each move
-between rests is compared with the cycloidal one of equal lift and angle (Norton, *Cam Design and Manufacturing
-Handbook*, Table 2-2), which has no jump in its acceleration.
+The motion of minimum peak acceleration jumps from one acceleration to another, so that its jerk is only bounded by the
+grid on which it was found. The motion of minimum peak velocity has such jumps in its velocity. Each move between rests
+is compared with the cycloidal move of equal lift and angle (Norton, *Cam Design and Manufacturing Handbook*,
+Table 2-2), which has no jump in its acceleration.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from synthesis.kinds.cam.statement.segments import Move
 PLAIN_LAW = "cycloidal"
 
 MAX_PEAK_RATIO = 10.0
-"""Multiple of a plain law's peak from which a peak is warned about: common laws stay below six."""
+"""Multiple of the plain law's peak above which a warning is given. Common laws stay below six."""
 
 REST_TOLERANCE = 1e-9
-"""Velocity at an end, as a share of the peak, up to which a move begins or ends at rest."""
+"""Maximum velocity at an end, as a share of the peak, of a move that begins or ends at rest."""
 
 DERIVATIVES = ((1, "velocity"), (2, "acceleration"), (3, "jerk"))
 
 
 def find_excesses(problem: CamProblem, composed: Composition) -> dict[str, float]:
-    """Return excessive peaks as multiples of a plain law's, by name, for moves whose law the criterion chose."""
+    """Return excessive peaks by name, as multiples of the plain law's, for moves with a law chosen by the criterion."""
     found: dict[str, float] = {}
     for stated, segment in zip(problem.segments, composed.program.segments, strict=True):
         if not isinstance(stated, Move) or not stated.follows_criterion:
             continue
         first, last = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
         moving = max(abs(float(first.v)), abs(float(last.v)))
-        # A plain law starts and ends at rest: other moves have nothing to compare with.
+        # A plain law starts and ends at rest, so that other moves cannot be compared with it.
         if moving > REST_TOLERANCE * segment.extremes(1).largest:
             continue
         plain = build_law_segment(LAWS[PLAIN_LAW], segment.angle, float(first.s), float(last.s))
@@ -50,7 +50,7 @@ def describe_excesses(problem: CamProblem, composed: Composition) -> str | None:
     if not found:
         return None
     excesses = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
-    # A limit is the remedy only if none is given yet.
+    # Recommend a limit only if none is given yet.
     unlimited = [name for name in found if getattr(problem.limits, name) is None]
     advice = f"; set a limit on {' or '.join(unlimited)}" if unlimited else ""
     return f"{excesses.capitalize()} that of a {PLAIN_LAW} motion of the same lift and angle{advice}."

@@ -1,19 +1,21 @@
 """A lower bound for all motions, from the multipliers of a program on knots.
 
-The solver's optimum only bounds the motions on its own grid. Its multipliers prove more. Let q be the highest
-derivative that is limited or minimized, u = dᵠs/dtᵠ, and let multipliers weigh values of s, …, dᵠ⁻¹s at the knots
-(atoms μ_i,k) and over steps (densities ρ_i). Integrated by parts from the end, the weighted sum over any motion is
+The solver's optimum only bounds the motions on its own grid, but its multipliers prove more. Let q be the order of the
+highest derivative that is limited or minimized, let u = dᵠs/dtᵠ, and let the multipliers weight the values of
+s, …, dᵠ⁻¹s at the knots (atoms μ_i,k) and over steps (densities ρ_i). After integration by parts from the end, the
+weighted sum over any motion is
 
     Σ μ_i,k s⁽ⁱ⁾(t_k) + ∫ Σ ρ_i s⁽ⁱ⁾ dt = Σ λ_i(0) s⁽ⁱ⁾(0) + ∫ r u dt,      −λ_i′ = λ_{i−1} + ρ_i,   r = λ_{q−1}
 
 with jumps μ_i,k of the costate λ_i at the knots (Luenberger, *Optimization by Vector Space Methods*, ch. 8 and 9). Weak
-duality then needs only the minimum of ∫ r u over the permitted u: −U ∫|r| for |u| ≤ U, −¼ ∫ r² if ∫ u² is the
-objective. r is a piecewise polynomial, and both integrals are bounded from above by its Bernstein coefficients. So the
-bound holds, to the rounding of double precision, for every motion that meets the constraints, with knots or without.
+duality then only requires the minimum of ∫ r u over the permitted u: −U ∫|r| for |u| ≤ U, or −¼ ∫ r² if ∫ u² is the
+objective. r is a piecewise polynomial, and both integrals are bounded from above by its Bernstein coefficients. The
+bound therefore holds, to the rounding of double precision, for every motion that meets the constraints, with knots or
+without.
 
 If a constraint involves the highest derivative itself together with others (a contact force without a limit on
-jerk), q is one order higher, and the bound holds for all motions whose q-th derivative stays within that of the motion
-found; ``cap`` is that limit.
+jerk), q is one order higher. The bound then holds for all motions with a q-th derivative no larger than the peak of
+the motion found; ``cap`` is that limit.
 """
 
 from __future__ import annotations
@@ -36,15 +38,15 @@ from synthesis.kinds.cam.program.knots import KnotMotion
 from synthesis.kinds.cam.program.piecewise import Piecewise
 
 COSTATE_TOLERANCE = 1e-10
-"""Share of the greatest multiplier below which λ(0) is rounding."""
+"""Share of the largest multiplier below which λ(0) counts as zero."""
 
 
 @dataclass(frozen=True)
 class LowerBound:
     """A lower bound of the objective, and the motions for which it holds.
 
-    ``cap`` is None if it holds for all motions, else (order, limit): it holds for those whose derivative of that
-    order stays below the limit.
+    ``cap`` is None if the bound holds for all motions. Otherwise it is (order, limit), and the bound holds for the
+    motions with a derivative of that order below the limit.
     """
 
     value: float
@@ -73,7 +75,7 @@ def _bound_solution(program: ConvexProgram, solution: Solution, spread: bool) ->
 
 @dataclass(frozen=True)
 class _Lagrangian:
-    """Minimum over the motions: constant + gains · z − square, the last by the square of the multipliers."""
+    """The minimum over the motions, constant + gains · z − square; ``square`` is quadratic in the multipliers."""
 
     constant: float
     gains: Real
@@ -95,7 +97,7 @@ def _maximize_scale(program: ConvexProgram, least: _Lagrangian) -> float:
         return math.sqrt(least.constant**2 / (4.0 * least.square)) if least.square else 0.0
     others = np.abs(least.gains) * program.box
     if program.objective == "scalar":
-        # The scale makes the objective's own variable cancel; the others take their worst value in the box.
+        # The scale cancels the objective's own variable. The other variables take their worst value in the box.
         weight = -float(least.gains[0])
         missed = float(others[1:].sum())
     else:
@@ -112,7 +114,7 @@ def _bound_block(
     order = max([limit.order for limit in block.limits] + [rms])
     cap: tuple[int, float] | None = None
     demanded = max((demand.order for demand in block.demands), default=-1)
-    # A demand on the derivative u itself needs one order more, with the found motion's peak as a cap.
+    # A demand on the derivative u itself requires one more order, with the peak of the motion found as the cap.
     if order <= demanded:
         order = demanded + 1
         cap = order, motion.derivative(order).peak()
@@ -120,7 +122,7 @@ def _bound_block(
     constant, gains = 0.0, np.zeros(len(program.box))
     for limit, pair in zip(block.limits, multipliers.limits, strict=True):
         if limit.order < order:
-            # Both signs of the two-sided limit |sⁱ| ≤ U contribute with their own multipliers.
+            # Both sides of the limit |sⁱ| ≤ U contribute with their own multipliers.
             weight = sum(
                 measure.add(times, slice(0, len(times)), limit.order, sign, one, spread)
                 for sign, one in zip((1.0, -1.0), pair, strict=True)
@@ -137,14 +139,14 @@ def _bound_block(
         constant -= demand.right * weight
         gains[: len(demand.gains)] += np.array(demand.gains) * weight
     if 0 <= rms < order:
-        # (dᵖs)² ≥ 2w dᵖs − w² for any w: the motion's own, averaged over steps.
+        # (dᵖs)² ≥ 2w dᵖs − w² for any w: use the motion's own derivative, averaged over each step.
         curve = motion.derivative(rms)
         powers = np.arange(1, curve.coefficients.shape[1] + 1)
         mean = (curve.coefficients / powers).sum(axis=1)
         measure.density[:, rms, 0] += 2.0 * mean
         constant -= float(mean**2 @ curve.steps)
     stated, vanishes = _adjust_conditions(block, multipliers.conditions, measure)
-    # Start states are free, so that λ(0) ≠ 0 makes the infimum −∞: the multipliers prove nothing.
+    # Start states are free, so that the infimum is −∞ if λ(0) ≠ 0: the multipliers prove nothing.
     if not vanishes:
         return _Lagrangian(-math.inf, gains, 0.0), cap
     for condition, weight in zip(block.conditions, stated, strict=True):
@@ -161,14 +163,14 @@ def _subtract_highest(
     is_objective: bool,
     cap: tuple[int, float] | None,
 ) -> _Lagrangian:
-    """Subtract the greatest −∫ r u over the permitted highest derivatives u, by their switching function r.
+    """Subtract the maximum of −∫ r u over the permitted highest derivatives u, with the switching function r.
 
-    ``is_objective``: the objective integrates u².
+    ``is_objective`` is true if the objective integrates u².
     """
     constant, gains = lower.constant, lower.gains
     square = 0.0
     at_order = [limit for limit in block.limits if limit.order == order]
-    # The objective integrates u² without a limit on u: −min (u² + r u) = r²/4.
+    # If the objective integrates u² and u is not limited, −min (u² + r u) = r²/4.
     if is_objective and not at_order:
         square = 0.25 * switching.convex_integral(np.square)
     elif is_objective:
@@ -186,7 +188,7 @@ def _subtract_highest(
 
 
 def _huber(r: Real, bound: float) -> Real:
-    """Return −min over |u| ≤ bound of u² + r u, a convex function of r."""
+    """Return −min(u² + r u) over |u| ≤ bound, a convex function of r."""
     size = np.abs(r)
     return np.where(size <= 2.0 * bound, 0.25 * r**2, bound * size - bound**2)
 
@@ -195,7 +197,7 @@ def _huber(r: Real, bound: float) -> Real:
 class _Measure:
     """Weights of the values of s, …, dᵠ⁻¹s: atoms at the knots, shape (n + 1, q), and densities on the steps.
 
-    ``density`` has shape (n, q, 2): coefficients of 1 and x on each step.
+    ``density`` has shape (n, q, 2): the coefficients of 1 and x on each step.
     """
 
     atoms: Real
@@ -205,16 +207,15 @@ class _Measure:
         """Add the multipliers of a constraint that holds on a range of knots; return their sum.
 
         The constraint holds at every time of its range, so that the weight of a knot may also be spread over the two
-        adjacent steps. Spread, the many small weights along a plateau make a smooth switching function instead of a
-        staircase; isolated weights are better left at their knots.
+        adjacent steps. If they are spread, the many small weights along a plateau give a smooth switching function
+        instead of a staircase. Isolated weights are better left at their knots.
         """
         # Weights on a step become a constant density over it.
         step = np.diff(times)[knots.start : knots.stop - 1]
         rows = slice(knots.start, knots.stop - 1)
         self.density[rows, order, 0] += share * weights.steps / step
         if spread and len(step):
-            # Each knot's weight becomes a hat function over its neighbouring steps, so that its total is
-            # unchanged.
+            # Each knot's weight becomes a hat function over its neighbouring steps with the same total.
             reach = np.zeros(len(weights.knots))
             reach[:-1] += 0.5 * step
             reach[1:] += 0.5 * step
@@ -245,7 +246,7 @@ def _integrate_costate(times: Real, measure: _Measure) -> tuple[Real, Piecewise]
 
 
 def _with_conditions(block: Block, weights: Real, measure: _Measure) -> _Measure:
-    """Add the weights of the conditions to those of the demands; conditions above the order are dropped."""
+    """Add the weights of the conditions to those of the demands; drop conditions above the order q."""
     total = measure.atoms.copy()
     for condition, weight in zip(block.conditions, weights, strict=True):
         for at, order, coefficient in condition.terms:
@@ -255,10 +256,10 @@ def _with_conditions(block: Block, weights: Real, measure: _Measure) -> _Measure
 
 
 def _adjust_conditions(block: Block, weights: Real, measure: _Measure) -> tuple[Real, bool]:
-    """Adjust the conditions' multipliers as little as makes λ(0) vanish: a free start state costs nothing.
+    """Adjust the conditions' multipliers by the smallest change for which λ(0) vanishes, as free start states require.
 
-    Conditions above the order q get the multiplier zero, which drops them. The second value is whether λ(0) could
-    be made to vanish; if not, the multipliers prove nothing.
+    Conditions above the order q get the multiplier zero, which drops them. The second returned value tells whether
+    λ(0) vanishes; if it does not, the multipliers prove nothing.
     """
     order = measure.atoms.shape[1]
     used = np.array([all(i < order for _, i, _ in condition.terms) for condition in block.conditions])

@@ -1,11 +1,11 @@
-"""A motion by knots: the state at each knot, and a constant highest derivative between them.
+"""A motion given by knots: the state at each knot, and a constant highest derivative between them.
 
 Between two knots, h apart, the state x = (s, s′, …) follows from the constant control u = dᵐs/dtᵐ by Taylor's formula
 
     x_i(t + h) = Σ_{j ≥ i} x_j hʲ⁻ⁱ/(j−i)! + u hᵐ⁻ⁱ/(m−i)!
 
-which is exact. So the motion is a piecewise polynomial of degree m with m − 1 continuous derivatives, and its peaks
-are found exactly instead of by sampling.
+which is exact. The motion is therefore a piecewise polynomial of degree m with m − 1 continuous derivatives, and its
+peaks are found exactly instead of by sampling.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from synthesis.kinds.cam.program.piecewise import Piecewise
 
 @dataclass(frozen=True)
 class KnotMotion:
-    """A motion on [times[0], times[-1]].
+    """A motion on the interval [times[0], times[-1]], given by its states at the knots and its control.
 
     Parameters
     ----------
@@ -69,12 +69,12 @@ class KnotMotion:
 def integrate_control(times: Real, start: Real, control: Real) -> KnotMotion:
     """Integrate a control from a start state into a motion.
 
-    Order by order from the highest, each a cumulative sum, so that the knots join to rounding.
+    The orders are integrated from the highest down, each by a cumulative sum, so that the steps join to rounding.
     """
     size = len(start)
     states = np.empty((len(times), size))
     step = np.diff(times)
-    # State i needs the higher ones at the left knots, which the earlier passes have filled in.
+    # State i depends on the higher ones at the left knots, which earlier passes have filled in.
     for i in range(size - 1, -1, -1):
         gained = control * step ** (size - i) / math.factorial(size - i)
         for j in range(i + 1, size):

@@ -1,6 +1,6 @@
 """The motion of minimum inertia torque.
 
-The torque that a mass takes is proportional to v a = dE/dt with E = v²/2, and in E the problem is convex: the lift
+The torque that moves a mass is proportional to v a = dE/dt with E = v²/2, and in E the problem is convex: the lift
 ∫ √(2E) dt is a concave function of E, and a peak or mean square of dE/dt is convex (Norton §8.7 compares the torques
 of the laws; the substitution is that of time-optimal control of robots, Verscheure et al., IEEE Trans. Autom.
 Control 54 (2009) 2318, doi:10.1109/TAC.2009.2028959). The second-order cone program gives the velocity v̄ of the
@@ -11,9 +11,10 @@ best motion. Two things follow:
 
       h − ½∫ v̄ − E(0) W(0) + α (E(1) − E(0)) ≤ ∫ (W + α) Ė dt ≤ max |Ė| ∫ |W + α| dt,  and ≤ rms(Ė) · rms(W + α);
 
-- the motion itself, which must have a continuous acceleration as well: programs over states at knots in which v a is
-  replaced by v̄ a, with v bounded by v̄ from above. If acceleration or jerk is limited, v̄ cannot be kept, and v a
-  is replaced by its tangent at the previous motion. The bound ignores those limits, so that a gap remains then.
+- the motion itself, which must also have a continuous acceleration. It follows from programs over states at knots in
+  which v a is replaced by v̄ a, with v bounded from above by v̄. If acceleration or jerk is limited, v̄ cannot be
+  attained, and v a is replaced by its tangent at the previous motion. The bound ignores these limits, so that a gap
+  remains.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ from synthesis.kinds.cam.program.piecewise import Piecewise
 from synthesis.numerics.convex import import_cvxpy, solve_convex_program
 
 MIN_VELOCITY_SHARE = 1e-9
-"""Share of the greatest velocity that replaces zero at rest, so that 1/v̄ stays finite."""
+"""Share of the maximum velocity that replaces zero at rest, so that 1/v̄ stays finite."""
 
 MAX_PASSES = 4
-"""Maximum number of programs solved."""
+"""Maximum number of passes, each of which solves one program."""
 
 VELOCITY_SLACK = 1e-3
-"""Share by which v may exceed v̄: it compensates for the loss at points where the acceleration cannot jump."""
+"""Permitted excess of v over v̄, as a share, which compensates for the loss where the acceleration cannot jump."""
 
 MAX_STEP_CHANGE = 0.1
 """Change of v a within a step, as a share of its peak, above which the next pass divides the step."""
@@ -46,12 +47,12 @@ PART_COUNT = 6
 """Number of parts into which such a step is divided."""
 
 MIN_GAIN = 1e-4
-"""Relative gain below which a pass is the last."""
+"""Relative gain of a pass below which no further pass follows."""
 
 
 @dataclass(frozen=True)
 class LeastTorque:
-    """A motion, its exact peak or root mean square of v a, and a lower bound of it for all motions."""
+    """A motion, the exact peak or root mean square of its v a, and the lower bound for all motions."""
 
     motion: KnotMotion
     value: float
@@ -128,7 +129,7 @@ def _refine_grid(times: Real, product: Piecewise) -> Real:
 
 
 def _solve_velocity(times: Real, measure: str, lift: float, ends: tuple[float, float]) -> Real | None:
-    """Solve the cone program in E for v̄ at the knots; the lift is at least the given one."""
+    """Solve the cone program in E for v̄ at the knots, with the given lift as the minimum."""
     cp = import_cvxpy()
 
     step = np.diff(times)
@@ -148,7 +149,7 @@ def _solve_velocity(times: Real, measure: str, lift: float, ends: tuple[float, f
 
 
 def _bound_torque(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[float, float]) -> float:
-    """Compute the bound above, for v̄ constant on each step and the best α."""
+    """Compute the bound of the module's docstring, for v̄ constant on each step and the best α."""
     step = np.diff(times)
     # 1/v̄ must stay finite at rest, where v̄ vanishes.
     mean = np.maximum(0.5 * (velocity[1:] + velocity[:-1]), MIN_VELOCITY_SHARE * velocity.max())
@@ -167,7 +168,7 @@ def _bound_torque(times: Real, velocity: Real, measure: str, lift: float, ends: 
 
 
 def _solve_linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Real | None) -> KnotMotion | None:
-    """Solve for the best motion with v a replaced by its tangent at (v, a), or by v times the new acceleration."""
+    """Solve for the best motion, with v a replaced by its tangent at (v, a) or, without a, by v times the unknown a."""
     cp = import_cvxpy()
 
     model = BlockModel(block, None)

@@ -1,7 +1,7 @@
-"""Motions that are optimal by a criterion, with a lower bound for all motions: the entry point to the convex programs.
+"""Optimal motions by a criterion, with a lower bound for all motions: the entry point to the convex programs.
 
-A run is one open segment of a motion program, or several in a row, between segments that are given. Conditions fix
-values at its ends and at single angles; limits and demands hold at every angle. The criteria are
+A run is one open segment of a motion program, or several in a row, between given segments. Conditions fix values at its
+ends and at single angles. Limits and demands hold at every angle. The criteria are
 
 - the peak or the root mean square of a derivative of s: a linear, or a quadratic program;
 - the peak of a contact force F = Σ w_i s⁽ⁱ⁾ + F₀ that must not fall below a floor: linear, the preload F₀ given or
@@ -32,19 +32,20 @@ from synthesis.kinds.cam.program.knots import KnotMotion
 from synthesis.kinds.cam.program.least_torque import solve_least_torque
 
 GRID_STEP_COUNTS = (400, 2000)
-"""Steps of the first grid, and of the second one, used if the first leaves a gap."""
+"""Numbers of steps of the first grid, and of the second grid, which is used if the first leaves a gap."""
 
 GAP_TOLERANCE = 1e-3
-"""Share of the bound by which the value may exceed it on the first grid."""
+"""Maximum gap between value and bound on the first grid, as a share of the bound, without a solution on the second."""
 
 TORQUE_STEP_COUNT = 800
-"""Steps if no limit binds: the acceleration of minimum torque is unbounded at the ends, so the grid is finer there."""
+"""Number of steps for the torque without other limits: the optimal acceleration is unbounded at the ends, where the
+grid is finer."""
 
 LIMIT_MARGIN = 1e-7
-"""Share by which limits are tightened for the solver, so that its own tolerance does not break them."""
+"""Relative tightening of limits for the solver, so that its tolerance does not break them."""
 
 MAX_SCALED_RADIUS = 1e4
-"""Radius and offset, in units of the cam's own size, that the bound has to cover: larger cams are of no use."""
+"""Maximum radius and offset, in units of the cam's own size, that the bound covers: larger cams are of no use."""
 
 TIME_TOLERANCE = 1e-9
 """Time difference, as a share of the run, up to which two times coincide."""
@@ -60,7 +61,7 @@ def ignore_steps(steps: int) -> None:
 
 @dataclass(frozen=True)
 class Run:
-    """An open part of the program: an angle and its constraints. Radians from its start, derivatives per radian."""
+    """An open part of the program: its angle and its constraints, in radians from its start, with rates per radian."""
 
     angle: float
     conditions: tuple[Condition, ...]
@@ -70,7 +71,7 @@ class Run:
 
     @property
     def lift(self) -> float:
-        """The greatest distance between two given positions, by which the program is scaled."""
+        """The maximum distance between two given positions: the scale of the program."""
         stated = [c.value for c in self.conditions if len(c.terms) == 1 and c.terms[0][1] == 0]
         return max(stated) - min(stated)
 
@@ -79,8 +80,9 @@ class Run:
 class Optimum:
     """The best motions found, one for each run, the criterion's exact value and its lower bound.
 
-    ``cap`` names the motions for which the bound holds: None for all, else (order, limit) for those whose derivative of
-    that order stays within the limit. ``scalars`` are preload, offset and the like, as the criterion defines them.
+    ``cap`` is None if the bound holds for all motions. Otherwise it is (order, limit), and the bound holds for motions
+    with a derivative of that order within the limit. ``scalars`` are the further results of the criterion, such as the
+    preload or the offset.
     """
 
     motions: tuple[KnotMotion, ...]
@@ -92,7 +94,7 @@ class Optimum:
 
 @dataclass(frozen=True)
 class NoMotion:
-    """No motion was found. ``factor``, if known, is proven: limits below this multiple of the given are too low."""
+    """The result if no motion was found; limits below ``factor`` times the given ones, if known, are proven too low."""
 
     factor: float | None
 
@@ -106,7 +108,7 @@ def minimize_derivative(
 
     def build_program(steps: int) -> ConvexProgram:
         block = _build_block(run, run.lift, size, steps)
-        # A limit on the minimized derivative is dropped: the objective pushes against it anyway.
+        # Drop a limit on the minimized derivative, which the objective reduces anyway.
         others = tuple(limit for limit in block.limits if limit.order != order)
         if measure == "rms":
             return ConvexProgram((block,), "rms", order)
@@ -120,7 +122,7 @@ def minimize_derivative(
         (run,), build_program, evaluate_solution, run.lift / run.angle**order, run.lift, on_grid=on_grid
     )
     limit = next((limit.constant for limit in run.limits if limit.order == order), math.inf)
-    # The dropped limit: if even the minimum exceeds it, the ratio proves how far it is too low.
+    # If even the minimum exceeds the dropped limit, their ratio proves by how much the limit is too low.
     if isinstance(best, Optimum) and measure == "peak" and best.value > limit:
         return NoMotion(best.bound / limit if best.bound > limit and best.cap is None else None)
     return best
@@ -134,7 +136,7 @@ def minimize_torque(run: Run, measure: Literal["peak", "rms"], *, on_grid: OnGri
     block = _build_block(run, lift, size, GRID_STEP_COUNTS[0])
     if not limited:
         x = np.linspace(0.0, 1.0, TORQUE_STEP_COUNT + 1)
-        # A 3-4-5 polynomial spaces the knots: close at the ends, where the acceleration grows without bound.
+        # A 3-4-5 polynomial places the knots close together at the ends, where the acceleration is unbounded.
         block = replace(block, times=x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
     start, end = (_find_condition_value(run, at, 0) / lift for at in (0.0, angle))
     ends = tuple(_find_condition_value(run, at, 1) * angle / lift for at in (0.0, angle))
@@ -150,7 +152,7 @@ def minimize_torque(run: Run, measure: Literal["peak", "rms"], *, on_grid: OnGri
     motion = least.motion
     if falls:
         motion = KnotMotion(motion.times, -motion.states, -motion.control)
-    # v·a of the scaled motion, back in units of lift and angle.
+    # The unit of v·a converts the value of the scaled motion to the run's lift and angle.
     unit = lift**2 / angle**3
     return Optimum((_scale_to_run(motion, run, lift),), least.value * unit, least.bound * unit)
 
@@ -173,11 +175,12 @@ def minimize_force(
     weights : tuple of float
         Spring rate, damping times speed, mass times its square.
     floor : float
-        Least contact force allowed.
+        Minimum contact force allowed.
     preload : float or None
-        None leaves it free: then it is the smallest that keeps the floor and is not negative; ``scalars`` holds it.
+        None leaves it free. It is then the smallest non-negative preload that keeps the floor, and is returned in
+        ``scalars``.
     rest : tuple of two floats or None
-        Least and greatest Σ weights[i] s⁽ⁱ⁾ on the given parts, if there are any.
+        Minimum and maximum Σ weights[i] s⁽ⁱ⁾ on the given parts, if there are any.
     """
     lift = max(run.lift for run in runs)
     unit = max(abs(w) * lift / min(run.angle for run in runs) ** i for i, w in enumerate(weights))
@@ -233,15 +236,15 @@ def minimize_roller_size(
     runs : sequence of Run
         All open parts of the motion program.
     tangents : sequence of two floats
-        For each run tan φ that is allowed while rising and while falling. If the follower rests at its lowest,
-        |e| ≤ tan φ d for both, so that v − e ≤ tan φ (s + d) is only needed with the rise's limit, and
-        e − v with the fall's.
+        For each run, the permitted tan φ while rising and while falling. If the follower rests at its lowest position,
+        |e| ≤ tan φ d holds for both limits, so that v − e ≤ tan φ (s + d) is only required with the limit of the rise,
+        and e − v ≤ tan φ (s + d) with that of the fall.
     offset : float or None
         The follower's offset e; None leaves it free. ``scalars`` holds d, and e if that is free.
-    rest : sequence of (tan φ, sign, least of s tan φ − sign v)
+    rest : sequence of (tan φ, sign, minimum of s tan φ − sign v)
         For the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
     grids : sequence of int
-        Steps of the first grid and of those that follow while a gap remains.
+        Numbers of steps of the first grid, and of the following grids, which are used while a gap remains.
     """
     unit = max(run.lift for run in runs)
     known = 0.0 if offset is None else offset / unit
@@ -295,11 +298,11 @@ def minimize_flat_size(
     runs : sequence of Run
         All open parts of the motion program.
     least_radius : float
-        Least radius of curvature of the cam, R + s + a.
+        Minimum radius of curvature of the cam, R + s + a.
     width : float or None
-        Face width that the contact may sweep: greatest less least v.
+        Maximum width of the face that the contact sweeps: max v − min v.
     rest : tuple of three floats or None
-        Least s + a, least v and greatest v of the given parts.
+        Minimum s + a, minimum v and maximum v of the given parts.
     """
     unit = max(run.lift for run in runs)
     size = max(*(_order(run) for run in runs), 3)
@@ -308,7 +311,7 @@ def minimize_flat_size(
         blocks = []
         for run in runs:
             speed = 1.0 / run.angle
-            # R + s + a ≥ ρ; the scalars are R, greatest v and −least v.
+            # R + s + a ≥ ρ; the scalars are R, max v and −min v.
             demands = [Demand((-1.0, 0.0, -(speed**2)), -least_radius / unit, (-1.0,))]
             if width is not None:
                 demands += [Demand((0.0, speed), 0.0, (0.0, -1.0)), Demand((0.0, -speed), 0.0, (0.0, 0.0, 1.0))]
@@ -325,7 +328,7 @@ def minimize_flat_size(
             if width is not None:
                 rows += [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]
                 right += [rest[1] / unit, -rest[2] / unit]
-        # v vanishes somewhere in a turn, so that both its extremes lie within the width.
+        # v vanishes somewhere in a turn, so that the magnitudes of both extremes are at most the width.
         box = np.array([1.0, *(2 * [width / unit] if width is not None else [])])
         return ConvexProgram(
             tuple(blocks), "scalar", rows=np.array(rows).reshape(-1, count), right=np.array(right), box=box
@@ -354,7 +357,7 @@ def _solve_on_grids(
     *,
     on_grid: OnGrid,
 ) -> Optimum | NoMotion:
-    """Solve on the first grid, and on the next without a solution or with a gap; return values in client units."""
+    """Solve on the first grid, and on the next one if there is no solution or a gap; return values in client units."""
     best: tuple[Solution, float, LowerBound] | None = None
     for steps in grids:
         on_grid(steps)
@@ -363,7 +366,7 @@ def _solve_on_grids(
         if solution is None:
             continue
         reached, bound = value(solution), compute_lower_bound(statement, solution)
-        # Bounds of all grids are valid: keep the best, if it holds for the same motions.
+        # The bounds of all grids are valid: keep the best one, if it holds for the same motions.
         if best is not None and best[2].value > bound.value and best[2].cap == bound.cap:
             bound = best[2]
         best = solution, reached, bound
@@ -376,18 +379,18 @@ def _solve_on_grids(
     if cap is not None:
         cap = cap[0], cap[1] * lift / min(run.angle for run in runs) ** cap[0]
     motions = tuple(_scale_to_run(motion, run, lift) for motion, run in zip(solution.motions, runs, strict=True))
-    # The bound exceeds the value reached only by rounding; such a bound must not be reported.
+    # The bound can only exceed the value by rounding: clip it.
     return Optimum(motions, reached * worth, min(bound.value, reached) * worth, cap, solution.scalars * scalar_worth)
 
 
 def _explain_infeasible(runs: Sequence[Run], lift: float) -> NoMotion:
-    """Bound how far the limits are too low: the least common factor that lets each run have a motion, from below."""
+    """Return a lower bound of the smallest common factor on all limits with which every run has a motion."""
     factors = []
     for run in runs:
         if not run.limits:
             continue
         block = _build_block(run, lift, _order(run), GRID_STEP_COUNTS[0])
-        # With all limits proportional to z₀ the least z₀ is the factor.
+        # With all limits proportional to z₀, the minimum z₀ is the factor.
         scaled = tuple(Limit(limit.order, 0.0, limit.constant) for limit in block.limits)
         statement = ConvexProgram((replace(block, limits=scaled),), "scalar", box=np.ones(1))
         solution = solve(statement)
@@ -396,13 +399,13 @@ def _explain_infeasible(runs: Sequence[Run], lift: float) -> NoMotion:
             if bound.cap is None:
                 # The limits were tightened by this margin, so that the proven factor is smaller by it.
                 factors.append(bound.value * (1.0 - LIMIT_MARGIN))
-    # Every run must be feasible, so the greatest factor counts.
+    # Every run must be feasible, so that the largest factor counts.
     factor = max(factors, default=0.0)
     return NoMotion(factor if factor > 1.0 else None)
 
 
 def _order(run: Run) -> int:
-    """Return the order of the control: above every continuous or given derivative, and at least every limit's."""
+    """Return the order of the control: above each continuous or given derivative, and at least that of each limit."""
     stated = max((order for condition in run.conditions for _, order, _ in condition.terms), default=0)
     return max([run.continuity + 1, stated + 1, 2] + [limit.order for limit in run.limits])
 
@@ -440,12 +443,15 @@ def _build_block(run: Run, lift: float, size: int, steps: int) -> Block:
 
 
 def _condition_unit(condition: Condition, lift: float, angle: float) -> float:
-    """Return the unit of a condition: the one of its highest order."""
+    """Return the unit of a condition, which is that of its highest order."""
     return lift / angle ** max(order for _, order, _ in condition.terms)
 
 
 def _build_grid(marks: Sequence[float], steps: int) -> Real:
-    """Place equal steps between marks, a multiple of four each: limits that switch at quarters then fall on knots."""
+    """Place equal steps between marks.
+
+    Each gap gets a multiple of four steps, so that limits that switch at quarters of it fall on knots.
+    """
     kept = [marks[0]]
     for mark in marks[1:]:
         if mark - kept[-1] > TIME_TOLERANCE:

@@ -1,9 +1,9 @@
 """Piecewise polynomials: values, derivatives and exact extremes.
 
 On each piece the polynomial is stored in powers of the piece's own x = (t − t_k)/h_k, 0 ≤ x ≤ 1. Its Bernstein
-coefficients bound it there (a polynomial lies in their convex hull), so that an extreme is searched only in the few
-pieces whose hull exceeds the best value found, and a convex function of the polynomial is integrated from above by
-the mean over the coefficients (Farin, *Curves and Surfaces for CAGD*, ch. 5).
+coefficients bound it there, because a polynomial lies in their convex hull. An extreme is therefore only searched in
+the few pieces with a hull that exceeds the best value found. The mean of a convex function over the coefficients is an
+upper bound of its integral (Farin, *Curves and Surfaces for CAGD*, ch. 5).
 """
 
 from __future__ import annotations
@@ -17,11 +17,12 @@ import numpy as np
 from kinematics.arrays import Real
 
 IMAGINARY_TOLERANCE = 1e-7
-"""Imaginary part up to which a root counts as real: a double root splits by the square root of rounding."""
+"""Maximum imaginary part of a root that counts as real: a double root splits by the square root of rounding."""
 
 
 ROUNDING_TOLERANCE = 1e-13
-"""Share of the best value by which a hull must exceed it to be searched; else plateaus would be, piece by piece."""
+"""Minimum excess of a hull over the best value, as a share, for a search of its piece. Without it, every piece of a
+plateau would be searched."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Piecewise:
         return np.diff(self.breaks)
 
     def __call__(self, t: Real | float) -> Real:
-        """Return the value at t; at a break of the piece that begins there (at the last, of the piece that ends)."""
+        """Return the value at t; at an inner break, that of the piece that begins there."""
         at = np.asarray(t, np.float64)
         piece = np.clip(np.searchsorted(self.breaks, at, side="right") - 1, 0, len(self.coefficients) - 1)
         x = (at - self.breaks[piece]) / self.steps[piece]
@@ -66,7 +67,7 @@ class Piecewise:
     def bernstein(self) -> Real:
         """Return the Bernstein coefficients of each piece, shape (n, degree + 1)."""
         degree = self.coefficients.shape[1] - 1
-        # Matrix from powers of x to Bernstein coefficients: C(j, k)/C(n, k).
+        # The matrix C(j, k)/C(n, k) converts powers of x to Bernstein coefficients.
         change = np.array(
             [
                 [math.comb(j, k) / math.comb(degree, k) if k <= j else 0.0 for k in range(degree + 1)]
@@ -76,7 +77,7 @@ class Piecewise:
         return np.asarray(self.coefficients @ change.T)
 
     def maximum(self) -> tuple[float, float]:
-        """Return the greatest value and its place (the one-sided limit if the polynomial jumps there)."""
+        """Return the maximum value and its place (the one-sided limit if the polynomial jumps there)."""
         at_start = self.coefficients[:, 0]
         at_end = self.coefficients.sum(axis=1)
         k = int(np.argmax(at_start))
@@ -98,18 +99,18 @@ class Piecewise:
         return best, where
 
     def minimum(self) -> tuple[float, float]:
-        """Return the least value and its place."""
+        """Return the minimum value and its place."""
         value, where = Piecewise(self.breaks, -self.coefficients).maximum()
         return -value, where
 
     def peak(self) -> float:
-        """Return the greatest magnitude."""
+        """Return the maximum magnitude."""
         return max(self.maximum()[0], -self.minimum()[0])
 
     def rms(self) -> float:
-        """Return the root of the mean square, exactly."""
+        """Return the exact root mean square."""
         n = self.coefficients.shape[1]
-        # ∫ xⁱ xʲ dx over a piece: the Gram (Hilbert) matrix of the powers.
+        # The Gram (Hilbert) matrix holds ∫ xⁱ xʲ dx over a piece.
         gram = 1.0 / (np.arange(n)[:, None] + np.arange(n)[None, :] + 1.0)
         squares = np.einsum("pi,ij,pj->p", self.coefficients, gram, self.coefficients)
         return math.sqrt(max(float(squares @ self.steps), 0.0) / float(self.breaks[-1] - self.breaks[0]))

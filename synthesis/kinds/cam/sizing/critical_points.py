@@ -1,11 +1,11 @@
-"""Worst points of a motion program, and the smallest radius for which all of them keep the limit.
+"""Critical points of a motion program, and the smallest radius for which all of them keep the limit.
 
-A limit on pressure angle or curvature must hold at every cam angle θ, and it depends on one radius p: it is a
+A limit on pressure angle or curvature must hold at every cam angle θ and depends on one radius p: it is a
 semi-infinite constraint g(θ, p) ≤ 0. If the set of allowed radii at a given θ is an interval, the smallest radius is a
 maximum over θ and is found exactly. If it is not, as for curvature, an exchange method is used
-(Hettich & Kortanek, SIAM Review 35 (1993) 380, doi:10.1137/1035089): at the current
-radius the worst angles are found exactly; each excludes all radii up to the next one that it allows, and the greatest
-of these is the next radius. No allowed radius is skipped, and near the solution the steps are those of Newton.
+(Hettich & Kortanek, SIAM Review 35 (1993) 380, doi:10.1137/1035089). At the current radius the worst angles are found
+exactly. Each of them excludes all radii up to the next one that it allows, and the largest of these is the next
+radius. No allowed radius is skipped, and near the solution the steps are Newton steps.
 """
 
 from __future__ import annotations
@@ -26,16 +26,17 @@ EXCESS_TOLERANCE = 1e-11
 """Excess, as a share of the limit, that is attributed to rounding."""
 
 MAX_EXCHANGED_ANGLES = 32
-"""Angles exchanged at once, the worst first; a motion with many knots has hundreds."""
+"""Maximum number of angles per exchange, the worst first; a motion with many knots has hundreds of candidates."""
 
 MAX_EXCHANGES = 100
-"""Maximum number of steps from radius to radius; a dozen is usual."""
+"""Maximum number of exchanges; a dozen is usual."""
 
 TRIAL_SHARES = np.concatenate([[0.0], np.geomspace(1e-12, 1.0, 6000)])
-"""Trial radii for the worst angles, as shares of the distance to the largest one; geometric, to resolve small steps."""
+"""Trial radii for the worst angles, as shares of the distance to the largest radius. The geometric spacing resolves
+small steps."""
 
 BISECTION_COUNT = 60
-"""Halvings of a bracket: enough to reach rounding."""
+"""Number of halvings of a bracket: enough to reach rounding."""
 
 
 def find_critical_motion(program: Program, *functions: Function) -> Motion:
@@ -44,7 +45,7 @@ def find_critical_motion(program: Program, *functions: Function) -> Motion:
     points = [program.breaks]
     for function in functions:
         points.append(find_stationary_points(partial(_evaluate_along, function, pieces), program.breaks)[0])
-    # The sign of v separates rise and fall, which have different limits, so that its zeros are candidates too.
+    # Rise and fall have different limits, so that the zeros of v, which separate them, are candidates, too.
     points.append(find_roots(lambda at: pieces.motion(at).v, program.breaks))
     at = np.unique(np.concatenate(points))
     # Derivatives may jump at a break: take the values on both sides.
@@ -73,8 +74,8 @@ def find_smallest_allowed(
     Returns
     -------
     float or None
-        None if a worst angle allows no radius up to ``stop``. If the exchanges do not converge, the last radius: none
-        below it is allowed, and the measurement of the finished cam decides whether it is allowed itself.
+        None if a worst angle allows no radius up to ``stop``. If the exchanges do not converge, the last radius is
+        returned. No radius below it is allowed, and the measurement of the finished cam decides whether it is itself.
     """
     p = start
     for _ in range(MAX_EXCHANGES):
@@ -89,7 +90,7 @@ def find_smallest_allowed(
         allowed = excess(worst, radii) <= 0.0
         if not allowed.any(axis=1).all():
             return None
-        # Every worst angle allows some radius: bracket its first allowed one between two trial radii, then
+        # Every worst angle allows some radius: bracket the smallest allowed one between two trial radii, then
         # bisect.
         first = allowed.argmax(axis=1)
         low, high = radii[np.maximum(first - 1, 0)], radii[first]
@@ -97,11 +98,11 @@ def find_smallest_allowed(
             middle = 0.5 * (low + high)
             good = excess(Motion(*(values[:, 0] for values in worst)), middle) <= 0.0
             high, low = np.where(good, middle, high), np.where(good, low, middle)
-        # The largest of the first allowed radii: no smaller one satisfies the angle that it belongs to.
+        # Take the largest of these radii: no smaller radius is allowed at its angle.
         p = float(high.max())
     return p
 
 
 def _shift_excess(excess: Callable[[Motion, Real], Real], radius: Real, motion: Motion) -> Real:
-    """Return the excess plus one, of the limit's size: at the limit the excess alone would be rounding noise."""
+    """Return the excess plus one, which near the limit is about 1, whereas the excess alone would be rounding noise."""
     return excess(motion, radius) + 1.0

@@ -1,4 +1,4 @@
-"""Refinement of a profile: points are added if a sound cam fails its verification because it has too few points."""
+"""Refinement of a profile: points are added if a sound cam fails its verification because of too few points."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 
 MAX_POINTS = 14_000
-"""Maximum number of points of a curve. If a motion changes its acceleration within less than a step, points are placed
-closer until the profile reproduces it; beyond this number the design fails its verification."""
+"""Maximum number of points of a curve. If the acceleration changes within less than a step, the points are refined
+until the profile reproduces the motion. Beyond this number the design fails its verification."""
 
 MAX_REFINEMENTS = 8
-"""Maximum number of refinements."""
+"""Maximum number of refinements of a profile."""
 
 
 class ReproductionMeasure(Protocol):
@@ -24,7 +24,7 @@ class ReproductionMeasure(Protocol):
 
     @property
     def off(self) -> Real:
-        """Deviation by angle of the profile; NaN if the follower cannot be laid on."""
+        """Deviation at each angle of the profile; NaN if the follower cannot be laid against it."""
 
 
 Mechanism = TypeVar("Mechanism")
@@ -45,15 +45,16 @@ def resolve_profile(
     angle : float, shape (n,)
         Initial cam angles of the points, radians.
     make, verify : callable
-        The mechanism with such points, and its checks with the measurements; None if nothing can be measured.
+        Build the mechanism with points at given angles; return its checks and the measurements, None if nothing can be
+        measured.
     closer : callable
-        A refinement of the angles, from those used, the measurements and the checks that failed; None if more points
-        do not help.
+        Refine the angles, given those used, the measurements and the failed checks; returns None if more points do not
+        help.
     """
     mechanism = make(angle)
     verification, measured = verify(mechanism)
     for _ in range(MAX_REFINEMENTS):
-        # Without contact everywhere there is nothing that closer points could improve.
+        # Closer points improve nothing if the follower does not touch the profile everywhere.
         if measured is None or not np.isfinite(measured.off).all():
             break
         finer = closer(angle, measured, {check.name for check in verification.checks if not check.passed})

@@ -1,7 +1,7 @@
 """The smallest cam for a motion program under limits on pressure angle, curvature and face width.
 
 The formulas are independent of those of the analysis core that verifies the cams. θ is the cam angle, k the
-tangent of the greatest pressure angle (rise and fall may have their own), ρ the least radius of curvature of the
+tangent of the maximum pressure angle (rise and fall may have different ones), ρ the minimum radius of curvature of the
 pitch curve.
 
 Translating roller, x = d + s with d² = R² − e²: tan φ = (v − e)/x, so that d ≥ |v − e|/k − s, and
@@ -12,12 +12,12 @@ Translating roller, x = d + s with d² = R² − e²: tan φ = (v − e)/x, so t
 tan φ = ±(C cos ψ − L μ)/(C sin ψ), so that with cos γ = L μ cos φ/C each cam angle allows an interval,
 |γ − φ| ≤ ψ ≤ min(φ + γ, 2π − γ − φ).
 
-Translating face: R ≥ ρ − s − a, and the contact sweeps from least to greatest v. Oscillating face with offset f:
+Translating face: R ≥ ρ − s − a, and the contact sweeps the range from min v to max v. Oscillating face with offset f:
 ρ = C sin ψ (1 − v²/μ²) + C cos ψ a/μ³ − f, again an interval of ψ at each cam angle.
 
-If every cam angle allows an interval, the smallest radius is the greatest lower end; otherwise it is found by
-exchange (:mod:`synthesis.kinds.cam.sizing.critical_points`). A free offset, arm or pivot is searched; without curvature
-the prime radius is a convex function of the offset, and its minimum is global.
+If every cam angle allows an interval, the smallest radius is the maximum of the lower ends; otherwise it is found by
+exchange (:mod:`synthesis.kinds.cam.sizing.critical_points`). A free offset, arm or pivot is searched. Without a limit
+on curvature the prime radius is a convex function of the offset, so that its minimum is global.
 """
 
 from __future__ import annotations
@@ -45,11 +45,12 @@ CENTRE_CLEARANCE = 1e-6
 """Minimum distance of the trace point from the cam's centre, as a share of the lift."""
 
 ANGLE_CLEARANCE = 1e-9
-"""Minimum angle between an arm and the line from pivot to centre, radians: in line the contact is not determined."""
+"""Minimum angle in radians between an arm and the line from pivot to centre: if both are in line, the contact is not
+determined."""
 
 VALLEY_TOLERANCE = 1e-7
-"""Accuracy of a searched dimension as a share of its range, if each evaluation sizes a cam: the radius is flat at
-its minimum, so that it is accurate to the square of this."""
+"""Accuracy of a searched dimension, as a share of its range, if each evaluation sizes a cam. The radius is flat at its
+minimum, so that it is accurate to the square of this."""
 
 COARSE_STEP_COUNT = 48
 """Number of steps of the grid on which the search for a free dimension starts."""
@@ -58,16 +59,17 @@ INFEASIBLE_RADIUS = 1e30
 """Radius that stands for an infeasible one: finite, so that the search can compute with it."""
 
 MINIMUM_TOLERANCE = 1e-10
-"""Relative accuracy of a searched dimension: the radius is flat there, so it is accurate to the square of this."""
+"""Relative accuracy of a searched dimension. The radius is flat at its minimum, so that it is accurate to the square of
+this."""
 
 
 @dataclass(frozen=True)
 class RollerLimits:
     """Limits of a roller's cam.
 
-    ``rise`` and ``fall`` are the greatest pressure angles (radians) for v ≥ 0 and v ≤ 0; ``pitch_radius`` is the
-    least |radius of curvature| of the pitch curve, 0 without a limit; ``least`` is the smallest prime radius that
-    hub and roller permit. ``moment`` times the tangent of the pressure angle is the overturning moment of a slide as
+    ``rise`` and ``fall`` are the maximum pressure angles (radians) for v ≥ 0 and v ≤ 0. ``pitch_radius`` is the
+    minimum |radius of curvature| of the pitch curve, 0 without a limit. ``least`` is the smallest prime radius that
+    hub and roller permit. ``moment`` times the tangent of the pressure angle is the overturning moment of a slide, as
     a signed share of its limit.
     """
 
@@ -87,7 +89,7 @@ class RollerLimits:
 class Size:
     """The smallest radius found, and the value of the free dimension if there was one.
 
-    ``proven`` if no smaller radius exists, to rounding.
+    ``proven`` is true if no smaller radius exists, to rounding.
     """
 
     radius: float
@@ -96,7 +98,7 @@ class Size:
 
 
 def _mask_active(sign: int, v: Real) -> NDArray[np.bool_]:
-    """Return the mask of a limit for rises (1, dwells included) or falls (−1)."""
+    """Return the mask of the cam angles at which the limit for rises and dwells (1) or for falls (−1) applies."""
     return v >= 0.0 if sign > 0 else v <= 0.0
 
 
@@ -120,8 +122,9 @@ def size_translating_roller(program: Program, offset: float, limits: RollerLimit
 def search_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[float, float]) -> Size | None:
     """Find the smallest prime radius of a translating roller follower over its offset.
 
-    By pressure angle alone d is a convex function of the offset, and so is the radius. If curvature allows the best
-    offset's radius, that is the global minimum; else the offset is searched from a grid and the answer is not proven.
+    For the pressure angle alone, d and the radius are convex functions of the offset. If curvature permits the radius
+    at the best offset, it is the global minimum. Otherwise the search over the offset starts from a grid, and its
+    result is not proven.
     """
     low, high = range_of_offset
     by_angle = replace(limits, pitch_radius=0.0)
@@ -158,7 +161,7 @@ def _make_height_function(share: float) -> Callable[[Motion], Real]:
 
 
 def _compute_min_height(program: Program, offset: float, limits: RollerLimits) -> float:
-    # Its stationary points are all angles at which d can be greatest.
+    # The bound on d can only have its maximum at stationary points of these functions.
     functions = _list_angle_functions(limits)
     if limits.moment is not None:
         functions += [_make_moment_function(sign, offset, limits.moment) for sign in (1.0, -1.0)]
@@ -171,7 +174,7 @@ def _make_moment_function(sign: float, offset: float, moment: Callable[[Motion],
 
 
 def _compute_min_height_at(motion: Motion, offset: float, limits: RollerLimits, program: Program) -> float:
-    """Return the least d by pressure angle, by the limits of the prime circle, and with the centre's clearance."""
+    """Return the minimum d for the pressure angle, the limits of the prime circle, and the clearance of the centre."""
     least = math.sqrt(max(limits.least**2 - offset**2, 0.0))
     needed = [least, float(-motion.s.min()) + CENTRE_CLEARANCE * program.lift]
     for sign, angle in limits.angles:
@@ -206,11 +209,11 @@ def size_oscillating_roller(
 ) -> Size | None:
     """Find the smallest prime radius of an oscillating roller follower; None if no start angle is feasible.
 
-    Pressure angle allows an interval of start angles at each cam angle. Within the common interval curvature is
-    satisfied by exchange.
+    The pressure angle permits an interval of start angles at each cam angle. Within the common interval, the exchange
+    method satisfies the limit on curvature.
     """
     s = program.peaks[0]
-    # The arm must not pass through the line of pivot and centre anywhere in its swing.
+    # The arm must not cross the line of pivot and centre anywhere in its swing.
     low, high = max(0.0, -s.least) + ANGLE_CLEARANCE, math.pi - max(s.greatest, 0.0) - ANGLE_CLEARANCE
     functions: list[Callable[[Motion], Real]] = []
     for _, angle in limits.angles:
@@ -221,7 +224,7 @@ def size_oscillating_roller(
         if not on.any():
             continue
         share = arm * (1.0 - sense * motion.v[on]) * math.cos(angle) / pivot
-        # γ does not exist: the velocity is too great for this pressure angle at any start angle.
+        # If γ does not exist, the velocity is too large for this pressure angle at any start angle.
         if np.abs(share).max() > 1.0:
             return None
         gamma = np.arccos(share)
@@ -250,7 +253,7 @@ def size_oscillating_roller(
 def search_pivot(
     program: Program, arm: float, range_of_pivot: tuple[float, float], sense: int, limits: RollerLimits
 ) -> Size | None:
-    """Find the smallest prime radius over the pivot's distance; searched from a grid, so that it is not proven."""
+    """Find the smallest prime radius over the pivot distance; the search starts from a grid and proves nothing."""
     return _search_dimension(lambda c: size_oscillating_roller(program, arm, c, sense, limits), *range_of_pivot)
 
 
@@ -264,7 +267,7 @@ def _compute_gamma(v: Real, angle: float, arm: float, pivot: float, sense: int) 
 
 
 def _compute_start_angle(arm: float, pivot: float, radius: float) -> float | None:
-    """Return ψ0 of a prime radius; None if it is out of reach."""
+    """Return ψ0 for a prime radius; None if the arm cannot reach it."""
     share = (radius**2 - (arm - pivot) ** 2) / (4.0 * arm * pivot)
     return 2.0 * math.asin(math.sqrt(max(share, 0.0))) if share < 1.0 else None
 
@@ -289,7 +292,7 @@ def size_translating_flat(program: Program, least_radius: float, least: float) -
     needed = least_radius - float((motion.s + motion.a).min())
     standing = CENTRE_CLEARANCE * program.lift - float(motion.s.min())
     radius = max(needed, least, standing)
-    # An absolute margin as well: a base radius near zero would get none in proportion.
+    # Add an absolute margin as well, because a relative one would vanish for a base radius near zero.
     return Size(radius + RADIUS_MARGIN * max(radius, program.lift), proven=True)
 
 
@@ -303,7 +306,7 @@ def size_oscillating_flat(
     width: float | None,
 ) -> Size | None:
     """Find the smallest base radius of an oscillating flat-faced follower; None if no start angle is feasible."""
-    # The contact stays finite only while μ > 0 over the whole turn.
+    # The contact stays finite only if μ > 0 over the whole turn.
     s, v = program.peaks[:2]
     # At μ = 1 ∓ v = 0 the contact runs off to infinity.
     if not (v.greatest if sense == 1 else -v.least) < 1.0:
@@ -326,7 +329,7 @@ def size_oscillating_flat(
 
     motion = find_critical_motion(program, lower, upper, lambda m: np.hypot(*compute_parts(m)))
     across, along = compute_parts(motion)
-    # The amplitude of the sinusoid is too small: no start angle reaches the radius.
+    # If the amplitude of the sinusoid is too small, no start angle gives the required radius of curvature.
     if (least_radius + face_offset > np.hypot(across, along)).any():
         return None
     reach = (least + face_offset) / pivot
@@ -349,10 +352,10 @@ def size_oscillating_flat(
 def _find_narrow_start(
     program: Program, pivot: float, sense: int, width: float, low: float, high: float
 ) -> float | None:
-    """Find the smallest start angle whose contact sweeps at most a width: C cos ψ/μ at any two cam angles.
+    """Find the smallest start angle at which the contact sweeps at most the face width.
 
-    For two cam angles with given factors and displacements the sweep is a sinusoid of ψ0. The permitted start angles
-    are found at closely spaced ones with exact extremes, and the first end of their range by bisection.
+    The sweep is the difference of C cos ψ/μ between two cam angles, and is a sinusoid of ψ0 for each pair. Closely
+    spaced start angles are tested with exact extremes, and the lower end of the permitted range is found by bisection.
     """
 
     def sweep(start: float) -> float:
@@ -389,7 +392,7 @@ def _search_dimension(size: Callable[[float], Size | None], low: float, high: fl
 
     def evaluate_radius(value: float) -> float:
         value = float(value)
-        # Every evaluation sizes a cam: remember them, and read the best off at the end.
+        # Every evaluation sizes a cam: cache the results, and take the best at the end.
         if value not in cache:
             smallest = size(value)
             cache[value] = INFEASIBLE_RADIUS if smallest is None else smallest.radius

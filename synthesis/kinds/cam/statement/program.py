@@ -21,17 +21,17 @@ from synthesis.kinds.cam.statement.segments import ConstantVelocity, Displacemen
 from synthesis.model.problem import Contradiction
 
 TURN_TOLERANCE = 1e-7
-"""Degrees by which the segments may miss a full turn: rounding of angles like 360/7."""
+"""Permitted deviation of the segments' sum from a full turn, degrees: rounding of angles such as 360/7."""
 
 JUMP_TOLERANCE = 1e-6
-"""Jump at a joint, relative to the segments' own rates, up to which it counts as continuous."""
+"""Maximum jump at a joint that counts as continuous, relative to the segments' own rates."""
 
 
 @dataclass(frozen=True)
 class ProgramStatement:
-    """Segments that follow one another, with the unit of their displacements.
+    """The sequence of requested segments, with the unit of their displacements.
 
-    ``displacement_unit`` times a requested displacement is the solver's: radians of an arm, or lengths.
+    ``displacement_unit`` is the factor from requested displacements to the solver's: radians of an arm, or lengths.
     """
 
     segments: Sequence[Segment]
@@ -85,8 +85,8 @@ class ProgramStatement:
     def list_laws(self) -> list[str]:
         """Return the law of each segment, or its motion if it has no law.
 
-        In the books the fall that mirrors a rise has the rise's name. So a fall with such a name is the mirrored law,
-        unless its neighbours only join the other one, which begins without acceleration.
+        In textbooks, the fall that mirrors a rise has the name of the rise. A fall with such a name is therefore the
+        mirrored law, unless only the other one, which begins without acceleration, joins its neighbours.
         """
         stated = [segment.law if isinstance(segment, Move) else segment.motion for segment in self.segments]
         laws = [
@@ -101,7 +101,7 @@ class ProgramStatement:
         return laws
 
     def compute_ends(self) -> list[tuple[State, State] | None]:
-        """Return s, v, a at both ends of each segment; None for automatic and optimal motions, which adapt."""
+        """Return s, v, a at both ends of each segment; None for automatic and optimal motions, whose ends adapt."""
         return self._compute_ends_by_laws(self.list_laws())
 
     def _compute_ends_by_laws(self, laws: Sequence[str]) -> list[tuple[State, State] | None]:
@@ -157,7 +157,7 @@ class ProgramStatement:
         return contradictions
 
     def find_joint_contradictions(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
-        """Return the errors of segments that do not make one turn, or do not join as a cam's program must."""
+        """Return the errors of segments that do not add up to one turn, or do not join as a cam's program must."""
         return [*self._check_turn(), *self._check_joints(accept_discontinuity, grooved)]
 
     def _check_turn(self) -> list[Contradiction]:
@@ -204,7 +204,7 @@ class ProgramStatement:
                 continue
             velocity, acceleration = self._compute_jumps(k, ends)
             reason = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
-            # Downward, or in a groove, the roller would have to turn an edge at once: no contact can be kept there.
+            # At a downward jump, or in a groove, the roller would have to turn at an edge: contact cannot be kept.
             if velocity < 0.0 or (velocity and grooved):
                 reason = "for which the cam would need an edge that no follower can track; choose laws that join"
             elif accept_discontinuity:
@@ -219,7 +219,7 @@ class ProgramStatement:
         return contradictions
 
     def _find_inner_jumps(self) -> list[Contradiction]:
-        """Return the laws whose acceleration jumps in their middle."""
+        """Return contradictions for laws with a jump of the acceleration in the middle."""
         return [
             Contradiction(
                 f"/segments/{k}/law",

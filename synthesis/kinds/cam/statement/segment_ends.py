@@ -35,23 +35,24 @@ END_RATES: dict[str, tuple[float, float, float, float]] = {
     "half_cycloidal_start": (0.0, 0.0, 2.0, 0.0),
     "half_cycloidal_end": (2.0, 0.0, 0.0, 0.0),
 }
-"""v and a at the start, v and a at the end, of a unit rise over a unit angle for each law."""
+"""For each law, v and a at the start and v and a at the end of a unit rise over a unit angle."""
 
 MIRROR_LAWS = {"eighth_power": "eighth_power_reversed", "double_harmonic": "double_harmonic_reversed"}
-"""Laws that begin without acceleration and end with one, and their mirror images for a fall; books name both alike."""
+"""Laws that begin without acceleration and end with one, and their mirror images for a fall, which textbooks call by
+the same name."""
 
 PIVOT_TOLERANCE = 1e-11
 """Pivot, relative to its column, below which conditions do not determine a polynomial."""
 
 SAMPLE_COUNT = 32
-"""Steps at which a polynomial's range is measured; the range only scales what counts as rounding or as an edge."""
+"""Number of steps for a polynomial's range, which only serves as the scale of the tolerances for rounding and edges."""
 
 Conditions = Sequence[tuple[float, int, float]]
-"""(angle in radians from the segment's start, order, value)."""
+"""Conditions as (angle in radians from the segment's start, order of the derivative, value)."""
 
 
 def compute_law_ends(law: str, angle: float, start: float, end: float) -> tuple[State, State]:
-    """Return s, v, a at both ends of a move by a law; radians."""
+    """Return s, v, a at both ends of a move by a law over an angle in radians."""
     v0, a0, v1, a1 = END_RATES[law]
     lift = end - start
     return (start, v0 * lift / angle, a0 * lift / angle**2), (end, v1 * lift / angle, a1 * lift / angle**2)
@@ -73,7 +74,7 @@ def compute_polynomial_ends(angle: float, conditions: Conditions) -> tuple[State
 
 
 def compute_polynomial_range(angle: float, conditions: Conditions) -> tuple[float, float] | None:
-    """Return the sampled least and greatest s of the lowest-degree polynomial through conditions, or None."""
+    """Return the sampled minimum and maximum s of the lowest-degree polynomial through conditions, or None."""
     coefficients = _solve_coefficients(angle, conditions)
     if coefficients is None:
         return None
@@ -87,7 +88,7 @@ def _solve_coefficients(angle: float, conditions: Conditions) -> list[float] | N
     rows = []
     for at, order, value in conditions:
         row = [_differentiate_power(at / angle, k, order) for k in range(n)]
-        # Conditions on different derivatives differ by powers of k: scaled rows make the pivots comparable.
+        # Conditions on different derivatives differ by powers of k: scale the rows to make the pivots comparable.
         size = max(map(abs, row))
         if not size:
             return None

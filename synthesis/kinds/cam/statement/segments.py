@@ -14,7 +14,8 @@ from synthesis.model.dimension import ACCELERATION, ANGLE, DISPLACEMENT, JERK, V
 from synthesis.model.problem import NonNegative, Number, PositiveNumber, Statement
 
 Span = Annotated[float, ANGLE, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
-"""Angle of a segment, degrees: no shaft is set as finely as shorter ones, and rates over them would be rounding."""
+"""Angle of a segment, degrees. Shorter segments are finer than any shaft can be set, and their rates would be
+rounding."""
 
 
 Law = Literal[

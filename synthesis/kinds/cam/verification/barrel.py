@@ -27,12 +27,12 @@ from synthesis.model.answer import Check, Verification
 
 @dataclass(frozen=True)
 class MeasuredBarrel:
-    """Measurements on the finished groove: greatest pressure angles (degrees), least radius of its pitch curve, length.
+    """Measurements on the finished groove: maximum pressure angles (degrees), minimum pitch curve radius, length.
 
-    ``off`` is the greatest deviation of either wall from the program, from each angle of the table to the next, as a
-    share of the lift; NaN if the roller touches no wall. ``unsettled`` is, as a multiple of the permitted value, the
-    dependence of the curvature on the point spacing from each angle to the next, where the curvature may be
-    greatest; ``unsteady`` is the same for the pressure angle.
+    ``off`` is the maximum deviation of either wall from the program, from each angle of the table to the next, as a
+    share of the lift; NaN if the roller touches no wall. ``unsettled`` is the dependence of the curvature on the point
+    spacing, from each angle to the next, as a multiple of the permitted value. It covers the places where the curvature
+    may have its maximum. ``unsteady`` is the same for the pressure angle.
     """
 
     rising: float
@@ -73,7 +73,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         )
     except DimensionError:
         return Verification.from_checks([*checks, NO_CONTACT_CHECK]), None
-    # The worse of both walls counts.
+    # The worse value of both walls counts.
     rising, falling = (math.degrees(max(getattr(wall, name) for wall in walls)) for name in ("rising", "falling"))
     unsettled, unsteady = (
         np.maximum(getattr(walls[0], name), getattr(walls[1], name)) for name in ("unsettled", "unsteady")
@@ -103,7 +103,7 @@ def _measure(wall: UnrolledWall, radius: float, roller: float) -> Measure:
 
 
 def _compute_pitch_radius(lower: WorstWallValues, upper: WorstWallValues, roller: float) -> float:
-    """Return the least radius of curvature of the pitch curve, which runs one roller radius inside each wall."""
+    """Return the minimum radius of curvature of the pitch curve, which runs one roller radius inside each wall."""
     # The offset by the roller radius shortens radii on the one side of a bend and lengthens them on the other.
     bends = (lower.up, -roller), (lower.down, roller), (upper.up, roller), (upper.down, -roller)
     return min((1.0 / bend + inside for bend, inside in bends if bend > 0.0), default=math.inf)

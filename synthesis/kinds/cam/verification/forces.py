@@ -1,8 +1,8 @@
 """Contact force and overturning moment on the finished cam, computed from the motion that its profile produces.
 
 The follower is laid against the profile at cam angles four times as close as the design's. Each contact gives
-displacement, velocity and acceleration, and these the force of mass, damping and spring at many speeds. Neither the
-program nor the closed form of the force over speed (a parabola) is used.
+displacement, velocity and acceleration, from which the force of mass, damping and spring follows at many speeds.
+Neither the program nor the closed form of the force over speed (a parabola) is used.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ from synthesis.model.dimension import FORCE, TORQUE
 from synthesis.verification.checks import check_maximum
 
 MOMENT_SLACK = 1e-8
-"""Relative slack of an overturning moment at its limit: the radius is enlarged by no more than rounding."""
+"""Relative slack of an overturning moment at its limit, since the radius is only enlarged by rounding."""
 
 SPEED_COUNT = 65
-"""Number of speeds at which the force is measured, from 0 to the greatest."""
+"""Number of speeds, from 0 to the maximum, at which the force is measured."""
 
 FORCE_TOLERANCE = 1e-3
-"""Share of the greatest force by which a measured one may be less: accelerations come from the profile's curvature."""
+"""Permitted shortfall of a measured force, as a share of the maximum force, because accelerations are derived from the
+profile's curvature."""
 
 
 def check_measured_contact(problem: CamProblem, mechanism: CamMechanism, forces: CamForces | None) -> list[Check]:
@@ -40,7 +41,7 @@ def check_measured_contact(problem: CamProblem, mechanism: CamMechanism, forces:
         return []
     load, _ = _load(problem, forces)
     found, _ = _lay_follower(mechanism)
-    # The least force over speed may lie anywhere: sample the range instead of its closed form.
+    # The minimum force over speed may lie anywhere: sample the range instead of its closed form.
     speeds = np.linspace(0.0, convert_rpm(forces.over_speeds.max_rpm), SPEED_COUNT)[:, None]
     force = load.force(_build_motion(found), speeds) / get_arm_length(problem)
     least, floor = float(force.min()), problem.dynamics.least_force
@@ -57,14 +58,14 @@ def check_overturning(problem: CamProblem, mechanism: CamMechanism, metrics: Cam
     load, speed = _load(problem, forces)
     found, angle = _lay_follower(mechanism)
     force = load.force(_build_motion(found), speed)
-    # In the ground's frame, of a cam that turns clockwise.
+    # Rotate to the ground's frame; the cam turns clockwise.
     turned = np.exp(1j * angle)
     if mechanism.rotation == "ccw":
         point, normal = np.conj(found.point * turned), np.conj(found.normal * turned)
     else:
         point, normal = found.point / turned, found.normal / turned
     if isinstance(problem.follower, TranslatingRoller):
-        # The guide's lever shrinks with the displacement; the lateral force is the contact force times tan φ.
+        # The lever arm to the guide shrinks with the displacement. The lateral force is the contact force times tan φ.
         lever = (problem.follower.overhang or 0.0) - found.s
         measured = force * normal.imag / normal.real * lever
     else:

@@ -32,8 +32,8 @@ GRID_STEP_COUNT = 320
 """Equal steps of a segment at which its displacement is measured."""
 
 DIFFERENCE_STRIDES = {"acceleration": 4, "jerk": 8}
-"""Steps between the angles of a difference: windows of a fortieth and of 3/40 of the segment. A deviation of 1e-7 of
-the lift moves a jerk by 2e-4 of the least that any motion has, an acceleration by 6e-4."""
+"""Steps between the angles of a difference: windows of 1/40 and of 3/40 of the segment. A deviation of 1e-7 of the lift
+changes a jerk by 2e-4, and an acceleration by 6e-4, of the minimum peak of any motion."""
 
 DERIVATIVE_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
@@ -41,23 +41,25 @@ PEAK_SLACK = 2e-3
 """Relative slack of the limits on the motion: twice the effect of displacement deviations on the differences."""
 
 CONDITION_SLACK = {1: 1e-3, 2: 1e-2}
-"""Deviation of a measured velocity or acceleration from a condition, as a share of the segment's peak."""
+"""Permitted deviation of a measured velocity (1) or acceleration (2) from a condition, as a share of the segment's
+peak."""
 
 CONDITION_STEP, CONDITION_REACH = 2.0, 2
-"""Step of a difference at a condition on the acceleration, in grid steps, and the number of half steps around it that
-are used: the given value must lie among the means there and the extrapolations from both sides, because an acceleration
-may have a kink at its condition."""
+"""Step of a difference at a condition on the acceleration, in grid steps, and the number of half steps used around it.
+The requested value must lie among the means there and the extrapolations from both sides, because an acceleration may
+have a kink at its condition."""
 
 MIN_STEP_SHARE = 0.25
-"""Least share of those steps, if a limit on jerk bounds how fast an acceleration may change. Without that limit it may
-be reached for an instant, which no cam shows."""
+"""Minimum share of these steps if a limit on the jerk bounds the change of the acceleration. Without this limit, the
+acceleration may be attained only for an instant, which cannot be observed on a cam."""
 
 HIDDEN_DEVIATION_SHARE = 0.2
-"""Share of the slack of a condition that the profile's deviation may add to a difference: the steps are as small as
-that allows."""
+"""Maximum contribution of the profile's deviation to a difference, as a share of a condition's slack. The steps are as
+small as this permits."""
 
 ONE_SIDED_WEIGHTS = (2.0, -5.0, 4.0, -1.0)
-"""Second derivative at the first of four equally spaced values, exact for a cubic; adds at most 12 deviations."""
+"""Weights of the second derivative at the first of four equally spaced values, exact for a cubic. Deviations of the
+values are amplified by at most 12."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class _OpenSegment:
         return np.asarray(total / h**order)
 
     def peak(self, name: str) -> float:
-        """Return the greatest magnitude of a derivative."""
+        """Return the maximum magnitude of a derivative."""
         return float(np.abs(self.v if name == "velocity" else self.compute_means(name)).max())
 
 
@@ -147,7 +149,7 @@ def _measure_segments(problem: CamProblem, measure: Measure) -> Iterator[_OpenSe
 
 
 def _measure_displacement_deviation(problem: CamProblem, measure: Measure, part: _OpenSegment) -> float:
-    """Return the greatest deviation of the measured displacement from ends, conditions and bands."""
+    """Return the maximum deviation of the measured displacement from ends, conditions and bands."""
     unit = problem.displacement_unit
     stated = [(0.0, part.heights[0]), (part.span, part.heights[1])]
     stated += [(t, x) for t, order, x in problem.program.convert_conditions(part.segment) if order == 0]
@@ -182,17 +184,17 @@ def _measure_rate_deviation(
     peak = part.peak("acceleration")
     step = CONDITION_STEP * part.span / GRID_STEP_COUNT
     if problem.limits.jerk is not None:
-        # The smallest step at which the profile's deviation hides at most HIDDEN of the slack, within its two
-        # bounds.
+        # Take the smallest step at which the profile's deviation is at most HIDDEN_DEVIATION_SHARE of the slack, within
+        # its two bounds.
         shown = math.sqrt(sum(map(abs, ONE_SIDED_WEIGHTS)) * off / (HIDDEN_DEVIATION_SHARE * CONDITION_SLACK[2] * peak))
         step = min(max(shown, MIN_STEP_SHARE / CONDITION_STEP * step), step)
-    # Half steps around the condition, whole ones to either side.
+    # Use half steps around the condition, and whole steps to either side.
     reach = 2 * (len(ONE_SIDED_WEIGHTS) - 1)
     s = {k: measure(part.start + at + 0.5 * k * step)[0] for k in range(-reach, reach + 1)}
     means = [s[k - 2] - 2.0 * s[k] + s[k + 2] for k in range(-CONDITION_REACH, CONDITION_REACH + 1)]
     for side in (-2, 2):
         means.append(np.sum([weight * s[side * k] for k, weight in enumerate(ONE_SIDED_WEIGHTS)], axis=0))
     measured = np.array(means) / step**2
-    # No deviation if the value lies between the least and the greatest of the means and extrapolations.
+    # The deviation is zero if the value lies between the minimum and the maximum of the means and extrapolations.
     missed = np.maximum(np.maximum(measured.min(axis=0) - value, value - measured.max(axis=0)), 0.0)
     return float(missed.max()) / peak

@@ -1,7 +1,7 @@
 """Comparison of a finished cam with the motion program: the table with the request, and the follower with the table.
 
 For any cam, the follower is measured at cam angles four times as close as the table's, and compared there with the
-quintic through the table's s, v, a on both sides. The deviations are shares of the lift.
+quintic through s, v, a of the table's neighbouring angles. The deviations are shares of the lift.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from synthesis.model.dimension import ACCELERATION, JERK, VELOCITY
 from synthesis.verification.checks import check_error, check_maximum
 
 REFINEMENT_FACTOR = 4
-"""Cam angles of the verification for each one of the design."""
+"""Number of cam angles of the verification for each cam angle of the design."""
 
 DISPLACEMENT_TOLERANCE = 1e-6
 """Permitted deviation of the measured displacement from the program, as a share of the lift: 1 µm for 1 m of lift."""
 
 DISPLACEMENT_TOLERANCE_WITH_JUMPS = 1e-4
-"""The same if the client accepts jumps in velocity or acceleration, which no curve through points can follow."""
+"""The same tolerance if the client accepts jumps in velocity or acceleration, which no curve through points follows."""
 
 PROGRAM_TOLERANCE = 1e-7
 """Permitted deviation of the program from the request, as a share of the lift."""
@@ -89,7 +89,7 @@ class Reproduction:
         )
 
     def deviation(self, measured: Real) -> Real:
-        """Return the greatest deviation of a measured displacement between table angles, as a share of the lift.
+        """Return the maximum deviation of a measured displacement between table angles, as a share of the lift.
 
         Shape (n,), from each angle of the table to the next; NaN if the follower touches nothing.
         """
@@ -112,7 +112,7 @@ def _subdivide_angles(angle: Real) -> Real:
 def _interpolate_quintic(angle: Real, s: Real, program: ProgramTable) -> Real:
     """Interpolate the displacement at the finer angles by the quintic through s, v, a at both ends of each interval.
 
-    The profile's points are the contacts at the table's angles, so that only between them can the profile deviate.
+    The profile's points are the contacts at the table's angles, so that the profile can only deviate between them.
     """
     step = np.diff(np.append(angle, TURN + angle[0]))[:, None]
     begin = s[:, None], step * np.array(program.v)[:, None], step**2 * np.array(program.a)[:, None]

@@ -1,10 +1,11 @@
 """Verification of a cam: its follower is laid against the finished profile, and its motion is measured.
 
 Only the answer itself is used, none of the solver's other results. The points of the profile alone give
-displacement, pressure angle and radius of curvature at cam angles four times as close as the design's; the
-displacement is compared with the program's table and its quintic in between, and the table with the request: laws and
-rests by the analysis core. Constraints of automatic and optimal motions (ends, conditions, bands, limits on velocity,
-acceleration and jerk) are measured on the profile too (:mod:`synthesis.kinds.cam.verification.rates`).
+displacement, pressure angle and radius of curvature at cam angles four times as close as the design's. The
+displacement is compared with the program's table and with the quintic between its angles. The table is compared with
+the request, using the analysis core for laws and dwells. Constraints of automatic and optimal motions (ends,
+conditions, bands, limits on velocity, acceleration and jerk) are also measured on the profile
+(:mod:`synthesis.kinds.cam.verification.rates`).
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.verification.checks import check_maximum, check_minimum
 
 MEASURED_SLACK = 1e-5
-"""Relative slack of limits on pressure angle, curvature and width. They are measured on a curve through points and
-worsened by the possible error of that curve."""
+"""Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points. The
+possible error of that curve is added to the measured values."""
 
 NO_CONTACT_CHECK = Check(name="follower_can_be_laid_on", passed=False)
 """Failed check of a profile that the follower cannot be laid against, or touches at other angles than its points'."""
@@ -52,23 +53,23 @@ class MeasuredProfile:
     Attributes
     ----------
     rising, falling : float
-        Greatest pressure angles, degrees.
+        Maximum pressure angles, degrees.
     convex_radius, concave_radius : float
-        Least radii of curvature of the profile; infinite if no part is convex, or concave.
+        Minimum radii of curvature of the profile; infinite if no part is convex, or concave.
     curvature_ratio : float
-        Least radius of curvature of the pitch curve over the roller's; infinite under a flat face.
+        Minimum radius of curvature of the pitch curve over the roller's; infinite under a flat face.
     sweep : float
         Length on a flat face that the contact sweeps.
     radius : float
-        Greatest radius of the profile.
+        Maximum radius of the profile.
     off : float64, shape (n,)
-        Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
+        Maximum deviation of the displacement from the program, from each of the n angles of its table to the next, as
         a share of the lift; NaN if the follower touches nothing.
     rounded : float
-        Share of the greatest curvature by which it is made worse for the rounding of the points.
+        Increase of the maximum curvature, as a share, that allows for the rounding of the points.
     unsettled : float64, shape (n,)
         Dependence of the curvature on the point spacing, from each angle to the next, as a multiple of the permitted
-        one; 0 where the curvature cannot be greatest.
+        one; 0 where the curvature cannot have its maximum.
     unsteady : float, shape (n,)
         The same for the pressure angle, or for the width of a face.
     """
@@ -98,7 +99,9 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
 
     Returns
     -------
-    Verification, Measured or None
+    verification : Verification
+        The checks.
+    measured : MeasuredProfile or None
         None if the follower cannot be laid against the profile at all.
     """
     demanded = Reproduction.from_program(problem, mechanism.program)
@@ -126,7 +129,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     try:
         found = find_worst_values(contour, follower, mechanism.rotation, stretches)
     except DimensionError:
-        # The points are out of the follower's reach at their own angles: the profile has no contacts to measure.
+        # The follower cannot reach the points at their own angles, so that the profile has no contacts to measure.
         return Verification.from_checks([*checks, NO_CONTACT_CHECK]), None
     measured = build_measured_profile(found, mechanism.follower.roller_radius or 0.0, off)
     if touches:
@@ -196,7 +199,7 @@ def _check_limits(problem: CamProblem, mechanism: CamMechanism, measured: Measur
         size = mechanism.base_radius or 0.0
     pivot = mechanism.follower.pivot_distance
     if pivot is not None:
-        # The cam turns fully, so that its greatest radius passes the pivot of the arm.
+        # The cam turns fully, so that its maximum radius passes the pivot of the arm.
         clear = measured.radius < pivot
         checks.append(Check(name="clears_pivot", passed=clear, value=measured.radius, limit=pivot, dimension=LENGTH))
     return [*checks, *check_sizes(limits, size - (mechanism.follower.roller_radius or 0.0), size)]
@@ -205,13 +208,13 @@ def _check_limits(problem: CamProblem, mechanism: CamMechanism, measured: Measur
 def compute_curvature_slack(unsettled: Real, rounded: float) -> float:
     """Return the relative slack of limits on curvature, from its dependence on point spacing and from rounding.
 
-    Rounding may have worsened the curvature by as much as is added for it.
+    Rounding may have increased the curvature by as much as the added allowance.
     """
     return UNSETTLED_SLACK if unsettled.any() else MEASURED_SLACK + min(2.0 * rounded, ROUNDED_SLACK)
 
 
 def check_roller(limits: CamLimits, rising: float, falling: float, curvature_ratio: float, slack: float) -> list[Check]:
-    """Check every roller's limits: pressure angles (degrees), and the least pitch-curve radius over the roller's."""
+    """Check the limits of any roller: pressure angles (degrees), and pitch curve radius over roller radius."""
     return [
         check_maximum("pressure_angle", rising, limits.pressure_angle, ANGLE, MEASURED_SLACK),
         check_maximum("pressure_angle_fall", falling, limits.falling_pressure_angle, ANGLE, MEASURED_SLACK),

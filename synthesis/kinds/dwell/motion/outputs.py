@@ -36,7 +36,7 @@ DWELL_SAMPLE_COUNT = 21
 """Number of crank angles in a dwell, in Chebyshev's spacing."""
 
 TRANSMISSION_STRIDE = 2
-"""Transmission angles are constrained at every second of the turn's crank angles."""
+"""Number of the turn's crank angles per constraint on the transmission angles."""
 
 PLACE_TOLERANCE = 0.03
 """Maximum distance of a dwell's mean from its place in the output's range, as a share of the range."""
@@ -48,7 +48,8 @@ MIN_STROKE = 0.3
 """Minimum stroke of a slider in units of the ground link."""
 
 MIN_SLOT_DISTANCE = 0.3
-"""Minimum distance of P from the pivot of a slotted link, in crank lengths: nearer, the link would be thrown around."""
+"""Minimum distance of P from the pivot of a slotted link, in crank lengths. A smaller distance would make the link turn
+very fast."""
 
 
 class Task(NamedTuple):
@@ -94,7 +95,7 @@ def build_fourbars(shapes: Real) -> Fourbar:
 
 
 def locate_points(shapes: Real, theta: Real, carrier: Carrier) -> Complex:
-    """Return the place of P at crank angles (N,) or (m, N), shape (m, N)."""
+    """Return the positions of P at crank angles (N,) or (m, N), shape (m, N)."""
     linkage = build_fourbars(shapes)
     if carrier == "coupler":
         return coupler_points(linkage, theta, np.full(len(shapes), OPEN_ASSEMBLY)).p
@@ -106,10 +107,10 @@ def locate_points(shapes: Real, theta: Real, carrier: Carrier) -> Complex:
 
 
 def compute_output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]:
-    """Return the output (radians from a mean direction, or place along the slide) and sine of its transmission angle,
-    (m, N).
+    """Return the output and the sine of its transmission angle, both of shape (m, N).
 
-    NaN where the links do not reach; the sine of a slotted link is P's distance from its pivot, up to 1.
+    The output is an angle from a mean direction, radians, or a position along the slide. It is NaN where the links do
+    not reach. For a slotted link the sine is replaced by P's distance from the link's pivot, at most 1.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         if kind == "slider":
@@ -130,7 +131,7 @@ def compute_output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Rea
 
 
 def _measure_angles(directions: Complex) -> Real:
-    """Return angles from a mean direction: the output turns by less than half a turn."""
+    """Return the angles of directions from their mean direction; the output turns by less than half a turn."""
     # Angles about the mean direction do not jump by a full turn.
     mean = np.where(np.isfinite(directions), directions, 0.0).sum(axis=1, keepdims=True)
     return np.asarray(np.angle(directions * np.conj(mean)))
@@ -187,7 +188,7 @@ def evaluate_dwells(task: Task, count: int, out: Real, ground: Real) -> tuple[Re
     task : Task
     count : int
         Number of crank angles of a dwell.
-    out : float, shape (m, dwells · count + CYCLE)
+    out : float, shape (m, dwells · count + cycle samples)
         The output during the dwells, and then over the turn.
     ground : float, shape (m,)
         Lengths of the ground links.
@@ -213,8 +214,10 @@ def evaluate_dwells(task: Task, count: int, out: Real, ground: Real) -> tuple[Re
 
 
 def _compute_place_margins(place: float, low: Real, high: Real, level: Real, way: Real) -> list[Real]:
-    """Return the margins of a dwell's mean about its place: on one side at an end of the range, on both sides
-    between."""
+    """Return the margins of a dwell's mean from the limits about its place.
+
+    A place at an end of the range has a limit on one side only, any other place on both sides.
+    """
     if place in (0.0, 1.0):
         return [PLACE_TOLERANCE - (high - level if place else level - low) / way]
     off = (level - low) / way - place
@@ -222,14 +225,19 @@ def _compute_place_margins(place: float, low: Real, high: Real, level: Real, way
 
 
 def _compute_slot_margin(shapes: Real, p: Complex, task: Task) -> Real:
-    """Return the margin of the link ratio for the slotted link, whose length is P's maximum distance from its pivot,
-    (m, 1)."""
+    """Return the margin of the link ratio for the slotted link, shape (m, 1).
+
+    The length of the link is P's maximum distance from its pivot.
+    """
     reach = np.abs(p - (shapes[:, 5] + 1j * shapes[:, 6])[:, None]).max(axis=1)
     return np.asarray(task.link_ratio / reach - 1.0)[:, None]
 
 
 def compute_pin_distances(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
-    """Return all distances between two pins of a link except the crank, which is 1: first b, c and d; each (m,)."""
+    """Return all distances between two pins of a link, shape (m,) each, b, c and d first.
+
+    The crank, of length 1, is not among them.
+    """
     b, c, d, x, y = shapes[:, :5].T
     lengths = [b, c, d, np.hypot(x, y), np.hypot(x - (b if carrier == "coupler" else c), y)]
     lengths += [shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind]]

@@ -24,7 +24,7 @@ from synthesis.kinds.dwell.motion.score import (
 )
 
 MAX_LOG_RANGE_ERROR = 1.0
-"""Maximum logarithm of the output's range over the required one: refinement does not mend a larger error."""
+"""Maximum absolute logarithm of the output's range over the required one; refinement does not correct larger errors."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -47,13 +47,13 @@ def score_program(
     Parameters
     ----------
     kind : int
-        ``ROCKER``, ``SLIDER`` or ``SLOT``.
+        ``ROCKER_CODE``, ``SLIDER_CODE`` or ``SLOT_CODE``.
     curves : complex, shape (m, N)
         Places of P.
     rows : int, shape (n,)
         The curve of each output.
     numbers : float, shape (n, 4)
-        Its dimensions, in the order of :mod:`scoring`.
+        Its dimensions, in the order of :mod:`synthesis.kinds.dwell.motion.score`.
     lengths, places : int and float, shape (k,)
         Number of samples of each dwell, and its share of the range from the minimum output; NaN for either end.
     way, least : float
@@ -103,10 +103,9 @@ def score_program(
 def locate_rests(
     out: Real, low: float, span: float, lengths: Integers, places: Real, at: Integers, share: Real
 ) -> float:
-    """Find for each dwell the section that moves least and is nearest to its place; return the worst score of all
-    dwells.
+    """Find for each dwell the section of minimum movement near its place; return the worst score of all dwells.
 
-    ``at`` and ``share`` receive the first sample and the place of each.
+    ``at`` and ``share`` receive the first sample and the place of each section.
     """
     n, worst = len(out), 0.0
     for dwell in range(len(lengths)):

@@ -1,8 +1,8 @@
-"""Find the rests of an output over a turn of its crank: where it moves least while the crank turns by a given angle.
+"""Find the rests of an output over a turn of its crank: the intervals of given crank rotation in which it moves least.
 
-A grid of the turn shows where a rest may lie. Between the grid's places the output is driven: all places at which it
-turns back are known, so that the output's movement from any place on follows from these and from its two ends; the
-place of minimum movement is then refined step by step.
+A grid of crank angles shows where a rest may lie. Between the grid's angles the output is driven. All its reversals are
+known, so that its movement in any interval follows from the reversals in it and from its two ends. The interval of
+minimum movement is then refined step by step.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ from synthesis.kinds.dwell.problem import PLACE_TOLERANCE, RequestedDwell
 from synthesis.verification.refined_extremes import REFINEMENT_COUNT, SAMPLE_COUNT, find_minimum_near
 
 STEP_ROUNDING = 1e-9
-"""Steps of the grid by which rounding may put an angle above a whole number of them."""
+"""Rounding of an angle that is a whole number of grid steps, in steps."""
 
 REFINEMENT_MARGIN = 2.0
 """Half-width, in steps of the grid, of the interval around the best grid place that contains the minimum."""
 
 PLACE_COUNT = 9
-"""Number of places first evaluated in this interval."""
+"""Number of angles first evaluated in this interval."""
 
 MAX_CANDIDATES = 3
-"""Maximum number of grid places that are refined: the best that are no neighbours."""
+"""Maximum number of grid angles that are refined: the best ones that are not neighbours."""
 
 MAX_WIDTH_CHANGE = 5.0
-"""Steps of the grid by which a width may differ from its value on the grid: one at each end, and three for its
+"""Maximum difference, in grid steps, of a width from its value on the grid: one step for each end and three for the
 middle."""
 
 KNOTS_PER_STEP = 4
 """Number of knots per grid step of the spline on which a width is found."""
 
 WIDTH_TOLERANCE = 1e-7
-"""Share of a grid step to which the width is found, far below the accuracy of any measurement of an output."""
+"""Tolerance of the width, in grid steps, far below the accuracy of any measurement of an output."""
 
 PANEL_COUNT, NODE_COUNT = 8, 12
 """Number of panels of a rest over which the output's mean is taken, and of Gauss nodes in each."""
@@ -71,9 +71,9 @@ class OutputCycle:
     output : callable
         The output at inputs (n,), shape (n,).
     inputs, values : float, shape (m + 1,)
-        Equal steps of a full turn, radians, and the output there.
+        Crank angles in equal steps over a full turn, radians, and the output there.
     whole : float
-        A full turn of the output, in its unit; infinite for one that slides.
+        A full turn of the output, in its unit; infinite for an output that slides.
     """
 
     def __init__(self, output: Callable[[Real], Real], inputs: Real, values: Real, whole: float = math.inf) -> None:
@@ -105,7 +105,7 @@ class OutputCycle:
         return alike
 
     def _refine_extremes(self, places: Real, upward: Real) -> tuple[Real, Real]:
-        """Refine the places at which the output turns back, and the output there, from places of the grid."""
+        """Refine the crank angles of reversals found on the grid; return them and the output there."""
         step, heights = self.step, self.evaluate(places)
         for _ in range(REFINEMENT_COUNT):
             closer = places[:, None] + step * np.linspace(-1.0, 1.0, SAMPLE_COUNT)
@@ -143,11 +143,11 @@ class OutputCycle:
 def find_rests(
     turn: OutputCycle, wide: float, count: int, allowed: float, way: tuple[float, float]
 ) -> list[MeasuredRest]:
-    """Find the rests of a turn: one, or one near each end of the range, the one that begins first at the front.
+    """Find one rest of a turn, or one near each end of the output's range in the order in which they begin.
 
     Parameters
     ----------
-    turn : Turn
+    turn : OutputCycle
     wide : float
         Rotation of the crank during which the output should rest, radians.
     count : int
@@ -159,8 +159,8 @@ def find_rests(
 
     Returns
     -------
-    list of Resting
-        Empty if the output has no rest near one of two ends.
+    list of MeasuredRest
+        Empty if two rests are requested and there is none near one of the ends.
     """
     jitter, mean = _measure_windows(turn, wide)
     middle = 0.5 * (way[0] + way[1])
@@ -177,21 +177,21 @@ def find_rests(
 def find_placed_rests(
     turn: OutputCycle, wanted: Sequence[RequestedDwell], allowed: float, way: tuple[float, float]
 ) -> list[MeasuredRest]:
-    """Find the rests of a turn nearest to given places of the range, in the order of these.
+    """Find the rests of a turn nearest to given places of the range, in the order of the requests.
 
     Parameters
     ----------
-    turn : Turn
-    wanted : sequence of Wanted
+    turn : OutputCycle
+    wanted : sequence of RequestedDwell
         The crank's rotation in each rest, degrees, and its place.
     allowed, way
         As for :func:`find_rests`.
 
     Returns
     -------
-    list of Resting
-        For each dwell the one that moves least among those with a mean within ``END`` of its place; if there is none,
-        at the nearest place.
+    list of MeasuredRest
+        For each dwell the rest of minimum movement among those whose mean is within :data:`PLACE_TOLERANCE` of the
+        requested place; if there is none, the rest whose mean is nearest to it.
     """
     low, high = way
     found = []
@@ -207,7 +207,7 @@ def find_placed_rests(
 
 
 def _measure_windows(turn: OutputCycle, wide: float) -> tuple[Real, Real]:
-    """Return the output's movement from each place of the grid on, and its mean there."""
+    """Return the output's movement and its mean in the interval that begins at each angle of the grid."""
     window = math.ceil(wide / turn.step - STEP_ROUNDING) + 1
     return _measure_ranges(turn.values, window), _average_windows(turn.values, window)
 
@@ -215,7 +215,7 @@ def _measure_windows(turn: OutputCycle, wide: float) -> tuple[Real, Real]:
 def _measure_rest(
     turn: OutputCycle, jitter: Real, wide: float, allowed: float, way: tuple[float, float]
 ) -> MeasuredRest:
-    """Find the rest that moves least, from the movements on the grid."""
+    """Find the rest of minimum movement from the movements on the grid, and measure it."""
     low, high = way
     begin = _find_stillest(turn, jitter, wide)
     least, most = (float(end[0]) for end in turn.find_bounds(np.array([begin]), wide))
@@ -226,8 +226,10 @@ def _measure_rest(
 
 
 def _find_stillest(turn: OutputCycle, jitter: Real, wide: float) -> float:
-    """Find the place of minimum movement, from the movements on the grid; a rest at the grid's seam begins just before
-    it."""
+    """Find the crank angle at which the rest of minimum movement begins, from the movements on the grid.
+
+    A rest at the grid's seam begins just before the seam.
+    """
     best: list[int] = []
     count = len(jitter)
     # Neighbours of a chosen place lead to the same minimum.
@@ -248,7 +250,7 @@ def _find_stillest(turn: OutputCycle, jitter: Real, wide: float) -> float:
 
 
 def _measure_ranges(values: Real, window: int) -> Real:
-    """Return maximum minus minimum of ``window`` values from each index on, around the turn."""
+    """Return maximum minus minimum of the ``window`` values that start at each index, around the turn."""
     top, foot = (f(values, window, mode="wrap") for f in (maximum_filter1d, minimum_filter1d))
     return np.asarray(np.roll(top - foot, -(window // 2)))
 

@@ -80,8 +80,9 @@ def score_outputs(
 def add_shortcomings(
     score: float, kind: int, curve: Complex, span: float, way: float, least: float, sine: float
 ) -> float:
-    """Add to a score the shortcomings of transmission and range; for a slider, whose stroke is free, of the curve's
-    size.
+    """Add the shortcomings of transmission and range to a score.
+
+    For a slider, whose stroke is free, a curve that is large compared with the stroke counts instead of the range.
 
     ``span`` is the output's range, ``way`` the required one, ``least`` and ``sine`` are sines of transmission angles.
     """
@@ -100,8 +101,7 @@ def add_shortcomings(
 def drive_rocker(
     curve: Complex, link: float, x: float, y: float, rocker: float, sign: int, ux: Real, uy: Real
 ) -> float:
-    """Compute a rocker's direction at every sample; return the minimum sine of its transmission angle, 0 if out of
-    reach."""
+    """Compute a rocker's direction at every sample; return its minimum transmission sine, 0 if P is out of reach."""
     nearest, farthest = np.inf, 0.0
     for m in range(len(curve)):
         dx, dy = curve[m].real - x, curve[m].imag - y
@@ -122,8 +122,7 @@ def drive_rocker(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def drive_slider(curve: Complex, link: float, offset: float, angle: float, sign: int, out: Real) -> float:
-    """Compute a slider's place at every sample; return the minimum sine of its transmission angle, 0 if out of
-    reach."""
+    """Compute a slider's position at every sample; return its minimum transmission sine, 0 if P is out of reach."""
     along_x, along_y = math.cos(angle), math.sin(angle)
     least = 1.0
     for m in range(len(curve)):
@@ -151,7 +150,7 @@ def drive_slot(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def compute_half_tangents(ux: Real, uy: Real, out: Real) -> None:
-    """Compute tangents of half the angles from the mean direction: they grow with the angles and need no arctangent."""
+    """Compute the tangents of half the angles from the mean direction, which increase with the angles."""
     x, y = ux.sum(), uy.sum()
     size = math.sqrt(x * x + y * y)
     for m in range(len(ux)):

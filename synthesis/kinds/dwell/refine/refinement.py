@@ -1,4 +1,8 @@
-"""Convert a shape of :mod:`outputs` or :mod:`triads` into a sixbar: its joints, its exact range, and the answer."""
+"""Conversion of a refined shape to a sixbar with the exact range, and to the mechanism of an answer.
+
+Shapes are those of :mod:`synthesis.kinds.dwell.motion.outputs` or of
+:mod:`synthesis.kinds.dwell.refine.stephenson_2`.
+"""
 
 from __future__ import annotations
 
@@ -32,8 +36,7 @@ MAX_RANGE_STEPS = 30
 """Maximum number of secant steps to the required range; five are usual."""
 
 RANGE_TOLERANCE, MAX_RANGE_ERROR = 1e-11, 1e-8
-"""Relative errors of the range at which the secant method has converged, and up to which its last step is still
-used."""
+"""Relative errors of the range: tolerance of the secant method, and maximum at which its last step is still used."""
 
 
 STEPHENSON_2_LINKS: Links = {
@@ -43,7 +46,7 @@ STEPHENSON_2_LINKS: Links = {
 
 
 class SixbarShape(NamedTuple):
-    """A shape in its own frame, with a crank of 1; its number of dwells, and the link that carries P, if it has P."""
+    """A shape in its own frame, with a crank of 1, its number of dwells, and the link that carries P, if any."""
 
     kind: Kind
     sign: int
@@ -53,7 +56,7 @@ class SixbarShape(NamedTuple):
 
 
 def measure_range(sixbar: SixbarShape) -> float:
-    """Return swing (radians) or stroke over the turn."""
+    """Return the swing (radians) or the stroke of the output over a turn."""
     if sixbar.kind == "triad":
         return stephenson_2.measure_range(sixbar.shape, GRID_STEP_COUNT)
     turn = np.linspace(0.0, 2.0 * np.pi, GRID_STEP_COUNT, endpoint=False)
@@ -63,7 +66,10 @@ def measure_range(sixbar: SixbarShape) -> float:
 
 
 def adjust_range(sixbar: SixbarShape, way: float) -> SixbarShape | None:
-    """Move the output's pivot along the line from the pin at rest (or along the slot) until the range is exact."""
+    """Adjust the range to ``way`` by moving the output's pivot along its line to the resting pin, or along the slot.
+
+    Returns None if the secant method does not converge.
+    """
     before, factor = (0.0, 0.0), 1.0
     made = sixbar
     for _ in range(MAX_RANGE_STEPS):
@@ -82,14 +88,14 @@ def adjust_range(sixbar: SixbarShape, way: float) -> SixbarShape | None:
 
 
 def _move_pivot(sixbar: SixbarShape, factor: float) -> SixbarShape:
-    """Move the output's pivot to ``factor`` times its distance from the pin, or P, at the begin of the first dwell."""
+    """Move the output's pivot to ``factor`` times its distance from D (or P) at the beginning of the first dwell."""
     if sixbar.kind == "triad":
         return sixbar._replace(shape=stephenson_2.move_pivot(sixbar.shape, factor))
     shape = sixbar.shape.copy()
     at = slice(5, 7) if sixbar.kind == "slot" else slice(6, 8)
     pivot = complex(*shape[at])
     joints = _locate_joints(sixbar)
-    # The output rests as long as this point does, wherever its pivot is on the line.
+    # The output rests as long as this point rests, wherever the pivot is on the line.
     rest = joints["P"] if sixbar.kind == "slot" else joints["D"]
     moved = rest + factor * (pivot - rest)
     shape[at] = moved.real, moved.imag
@@ -100,7 +106,7 @@ def _move_pivot(sixbar: SixbarShape, factor: float) -> SixbarShape:
 
 
 def _locate_joints(sixbar: SixbarShape) -> dict[str, complex]:
-    """Return the joints at the begin of the first dwell, in the shape's own frame."""
+    """Return the joints at the beginning of the first dwell, in the shape's own frame."""
     if sixbar.kind == "triad":
         return stephenson_2.name_joints(sixbar.shape)
     shape = sixbar.shape[None]

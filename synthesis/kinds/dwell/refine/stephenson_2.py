@@ -1,9 +1,9 @@
 """Stephenson II dwell sixbars as shapes: their objective and constraints, their joints, and their range.
 
-A shape has the numbers listed in :mod:`triad_turn`, in a frame with the crank's pivot O2 at the origin, O4 on the
-positive real axis and O2–A of 1. Its pins stand at the begin of the first dwell, so that its lengths and its assembly
-follow from them. While the output rests, its pin E stands still and link 4 turns about it; seen from the crank, E moves
-along an arc about O2.
+A shape has the numbers listed in :mod:`synthesis.kinds.dwell.refine.stephenson_2_cycle`, in a frame with the crank's
+pivot O2 at the origin, O4 on the positive real axis and O2–A of 1. The pins are given at the beginning of the first
+dwell and determine the lengths and the assembly. While the output rests, its pin E stands still and link 4 turns about
+it. Seen from the crank, E then moves along an arc about O2.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class DrivenShapes(NamedTuple):
     pins : complex, shape (m, n, 3)
         B, D and E at the requested angles.
     course : float, shape (m, N)
-        The output at equal steps of the turn from the begin of the first dwell, as an angle from there.
+        The output at equal steps of the turn from the beginning of the first dwell, as an angle from there.
     sines : float, shape (m, N, 3)
         Magnitudes of the sines of its transmission angles: output, link 3, link 5.
     """
@@ -86,7 +86,7 @@ def evaluate_shapes(task: Task, nodes: Real, shapes: Real) -> ShapeValues:
 
 
 def locate_pins(shapes: Real) -> Complex:
-    """Return A, C, B, D and E at the begin of the first dwell, (m, 5)."""
+    """Return A, C, B, D and E at the beginning of the first dwell, shape (m, 5)."""
     crank = np.exp(1j * shapes[:, BEGIN_INDEX])
     carried = [shapes[:, at] + 1j * shapes[:, at + 1] for at in (C, B, D, E)]
     return np.stack([crank, carried[0] * crank, *carried[1:]], axis=1)
@@ -111,7 +111,7 @@ def get_bounds(numbers: int, link_ratio: float) -> tuple[Real, Real]:
 
 
 def name_joints(shape: Real) -> dict[str, complex]:
-    """Return the joints by name at the begin of the first dwell."""
+    """Return the joints by name at the beginning of the first dwell."""
     moving = zip("ACBDE", locate_pins(shape[None])[0], strict=True)
     return {"O2": 0j, "O4": complex(shape[FIXED_INDEX]), **{name: complex(z) for name, z in moving}}
 
@@ -123,9 +123,9 @@ def measure_range(shape: Real, steps: int) -> float:
 
 
 def move_pivot(shape: Real, factor: float) -> Real:
-    """Move the output's pivot to ``factor`` times its distance from its pin E at the begin of the first dwell.
+    """Move the output's pivot to ``factor`` times its distance from its pin E at the beginning of the first dwell.
 
-    As long as E rests the output does, regardless of its pivot.
+    The output rests as long as E rests, wherever its pivot is.
     """
     moved = shape.copy()
     e = complex(shape[E], shape[E + 1])

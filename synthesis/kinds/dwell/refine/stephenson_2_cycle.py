@@ -6,10 +6,10 @@ which
 
     |q_k − j_k|² = l_k²,  k = 1, 2, 3.
 
-It is followed from step to step by Newton's method, so that no dyad of the mechanism has to close by itself: links
-3 and 5 may swing relative to the crank in any way. The turn is no motion if a sine of a transmission angle vanishes
-or changes its sign at a step, or if link 4 does not return to its first place. Verification later checks between the
-steps.
+The pose is followed from step to step by Newton's method, so that no dyad of the mechanism has to close by itself, and
+links 3 and 5 may swing relative to the crank in any way. A sixbar does not complete the turn if the sine of a
+transmission angle vanishes or changes its sign at a step, or if link 4 does not return to its first pose. Verification
+later checks the motion between the steps.
 """
 
 from __future__ import annotations
@@ -24,14 +24,15 @@ from synthesis.fit.triad_slant import compute_leg_slant
 
 FIXED_INDEX, C, B, D, E, SHORTEST_INDEX, BEGIN_INDEX = 0, 1, 3, 5, 7, 9, 10
 """Index of the first number of each part of a shape: distance of O4 from O2; C in the frame of the crank, from O2 and
-with the real axis to A; B, D and E at the begin of the first dwell, with O4 on the real axis; the minimum distance of
-two pins of a link; and the angle of the crank at the begin of the first dwell, followed by those of the others."""
+with the real axis to A; B, D and E at the beginning of the first dwell, with O4 on the real axis; the minimum distance
+of two pins of a link; and the angle of the crank at the beginning of the first dwell, followed by those of the others.
+"""
 
 LEG_COUNT = 3
 
 MAX_NEWTON_STEPS, NEWTON_TOLERANCE, MAX_NEWTON_ROTATION = 12, 1e-12, 0.5
-"""Maximum number of Newton steps, the last of them as a share of the sixbar's size, and maximum rotation of link 4 in
-one step, radians."""
+"""Newton's method for the pose of link 4: maximum number of steps, tolerance of the last step relative to the sixbar's
+size, and maximum rotation in one step, radians."""
 
 MAX_STEP_ROTATION = 0.7
 """Maximum rotation of link 4 between two steps of the crank, radians."""
@@ -42,10 +43,10 @@ CLOSURE_TOLERANCE = 1e-6
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle_link(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real) -> bool:
-    """Move link 4 near a place (x and y of B, γ) to where its three legs have their lengths; return whether that
-    converged.
+    """Solve for the pose of link 4 at which its three legs have their lengths; return whether that converged.
 
-    ``inner``: its pins in its own frame, the first of them B, its origin; ``work`` (4, LEGS): scratch.
+    ``pose`` (x and y of B, and γ) is the initial guess and receives the solution. ``inner`` contains the pins of link 4
+    in its own frame, whose origin is the first of them, B. ``work`` (4, :data:`LEG_COUNT`) is scratch.
     """
     f, px, py, moment = work
     size = 1.0 + legs.max()
@@ -82,7 +83,7 @@ def _settle_link(outer: Complex, legs: Real, inner: Complex, pose: Real, work: R
 def _place_pins(
     at: Real, begin: float, c: complex, o4: complex, poses: Real, legs: Real, inner: Complex, pins: Complex
 ) -> bool:
-    """Fill the places of B, D and E at crank angles between the poses of a turn; return whether all were found."""
+    """Compute B, D and E at crank angles between the poses of a turn; return whether all were found."""
     steps, pose, work = len(poses) - 1, np.empty(3), np.empty((4, LEG_COUNT))
     outer = np.array([1.0 + 0.0j, c, o4])
     for n in range(len(at)):
@@ -108,17 +109,17 @@ def drive_triad(shape: Real, at: Real, least: float, pins: Complex, course: Real
 
     Parameters
     ----------
-    shape : float, shape (BEGIN + ...,)
+    shape : float, shape (BEGIN_INDEX + dwells,)
     at : float, shape (n,)
         Further crank angles, radians, at which link 4 is required, in addition to the steps of the turn.
     least : float
         Sine of a transmission angle at and below which the sixbar is discarded.
-    pins : complex, shape (n, LEGS)
-        Filled: B, D and E there.
+    pins : complex, shape (n, LEG_COUNT)
+        Filled: B, D and E at these angles.
     course : float, shape (N,)
-        Filled: the output's angle from the begin of the first dwell, at N equal steps of the turn from there on.
-    sines : float, shape (N, LEGS)
-        Filled: magnitudes of the sines of the transmission angles there, of output, link 3 and link 5.
+        Filled: the output's angle from the beginning of the first dwell, at N equal steps of the turn from there on.
+    sines : float, shape (N, LEG_COUNT)
+        Filled: magnitudes of the sines of the transmission angles of output, link 3 and link 5 at these steps.
     """
     steps, begin = len(course), shape[BEGIN_INDEX]
     crank, c, o4 = (
@@ -128,7 +129,7 @@ def drive_triad(shape: Real, at: Real, least: float, pins: Complex, course: Real
     )
     outer = np.array([crank, c * crank, o4])
     b, d, e = complex(shape[B], shape[B + 1]), complex(shape[D], shape[D + 1]), complex(shape[E], shape[E + 1])
-    # Links 4 and the output need a length.
+    # Link 4 and the output need a length.
     if not (abs(d - b) > 0.0 and abs(e - o4) > 0.0):
         return False
     carried = np.array([b, d, e])

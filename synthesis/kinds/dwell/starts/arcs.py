@@ -52,8 +52,7 @@ def fit_arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: R
                 square = z.real * z.real + z.imag * z.imag
                 sxz += z.real * square
                 syz += z.imag * square
-            # Zero for a straight piece: the division then gives infinity, as the error model of NumPy allows, and no
-            # arc.
+            # The determinant of a straight piece is zero. NumPy's error model then gives infinity, which means no arc.
             determinant = sxx * syy - sxy * sxy
             x = 0.5 * (sxz * syy - syz * sxy) / determinant
             y = 0.5 * (syz * sxx - sxz * sxy) / determinant
@@ -72,8 +71,7 @@ def fit_arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: R
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def fit_lines(curves: Complex, length: int, points: Complex, directions: Real, off: Real) -> None:
-    """Fit a line to every piece of ``length`` samples: a point, the angle, and the maximum distance from it, shape (m,
-    N)."""
+    """Fit a line to every piece of ``length`` samples: point, angle and maximum distance from it, shape (m, N)."""
     count, n = curves.shape
     piece = np.empty(length, np.complex128)
     for row in range(count):

@@ -30,14 +30,14 @@ DRAW_COUNT = 4000
 """Number of symmetric and of general fourbars that are drawn."""
 
 MAX_PIECES = 300
-"""Number of pieces of curves that get outputs."""
+"""Maximum number of pieces of curves for which outputs are built."""
 
 DIRECTION_COUNT, REACH_COUNT = 24, 10
-"""Number of directions of an output from the place where its pin rests, and of its distances."""
+"""Number of directions, and of distances, of an output's pivot from the point at which its pin rests."""
 
 MIN_PIECE_ANGLE = math.radians(60.0)
-"""Minimum length of the pieces for two dwells, radians of the crank: any shorter piece is near some arc, so all would
-pass."""
+"""Minimum length of the pieces for two dwells, radians of crank rotation. Shorter pieces are all close to some arc, so
+that none would be excluded."""
 
 MIN_SAMPLES = 4
 """Minimum number of samples of a piece: three always lie on a circle."""
@@ -47,17 +47,18 @@ MAX_PIECE_ERROR, MAX_PAIR_DIFFERENCE, MIN_CENTRE_SEPARATION = 0.03, 0.06, 0.15
 their angles, minimum distance of the arcs' centres; shares of the curve's extent."""
 
 MAX_PAIRS, MAX_JUDGED = 1_000_000, 60_000
-"""Maximum number of pairs of pieces that are listed, and of those that get an output."""
+"""Maximum number of pairs of pieces that are listed, and of those for which an output is built."""
 
 UNEVENNESS_WEIGHT = 0.3
 """Weight in a start's score of the logarithm by which its link ratio exceeds the limit."""
 
 
 class Start(NamedTuple):
-    """A shape of :mod:`outputs` or :mod:`triads`, its output's assembly sign, and each dwell's place in the output's
-    range.
+    """A shape, the assembly sign of its output, and the place of each dwell in the output's range.
 
-    A Stephenson II has no other sign, no link with P and no fourbar.
+    Shapes are those of :mod:`synthesis.kinds.dwell.motion.outputs` or of
+    :mod:`synthesis.kinds.dwell.refine.stephenson_2`. A Stephenson II has only one assembly sign, no link that carries
+    P, and no fourbar.
     """
 
     shape: Real
@@ -111,7 +112,7 @@ class Outputs(NamedTuple):
 
 
 def count_samples(dwell: float) -> int:
-    """Return the number of samples of a piece as long as a dwell (radians): one more than steps."""
+    """Return the number of samples of a piece as long as a dwell (radians), which is one more than its steps."""
     return max(MIN_SAMPLES, round(dwell / math.tau * CYCLE_SAMPLE_COUNT) + 1)
 
 
@@ -124,7 +125,7 @@ def compute_dwell_begins(at: Real, length: int | Integers, dwell: float | Real) 
 
 
 def select_promising(scores: Real, rows: Integers, most: int) -> Iterator[int]:
-    """Yield the outputs with the lowest finite scores, at most ``most``, each of another row."""
+    """Yield the outputs with the lowest finite scores, at most ``most`` and only one for each row."""
     used: set[int] = set()
     for n in np.argsort(scores):
         if len(used) == most or not np.isfinite(scores[n]):
@@ -147,7 +148,7 @@ def compute_unevenness_cost(shapes: Real, tried: Outputs, kind: Kind, carrier: C
 
 
 def find_starts(kind: Kind, required: Requirements, rng: np.random.Generator, most: int) -> list[Start]:
-    """Find the most promising shapes for one dwell, or two equal ones at both ends, each of another fourbar."""
+    """Find the most promising shapes for one dwell, or two equal ones at both ends, one for each fourbar."""
     dwells, dwell, way = len(required.dwells), required.dwells[0], required.way
     shapes = draw_crank_rockers(rng, required.transmission)
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE_SAMPLE_COUNT, endpoint=False)
@@ -182,7 +183,7 @@ def find_starts(kind: Kind, required: Requirements, rng: np.random.Generator, mo
 
 def draw_crank_rockers(rng: np.random.Generator, transmission: float) -> Real:
     """Draw crank-rockers with a crank of 1: b, c, d, and P in the coupler's frame."""
-    # Most random triples are no sound crank-rockers; a twelvefold number leaves enough of both sorts.
+    # Most random triples are not sound crank-rockers; twelve times the number leaves enough of both kinds.
     count = 12 * DRAW_COUNT
     b, c, d = np.exp(rng.uniform(math.log(1.2), math.log(6.0), (3, count)))
     # Even rows are symmetric: coupler = rocker, and below also B P.
@@ -245,8 +246,10 @@ def build_on_arcs(curves: Complex, pieces: Pieces, kind: Kind) -> Outputs:
 
 
 def build_on_two_arcs(curves: Complex, pieces: tuple[Pieces, Pieces], kind: Kind, way: float) -> Outputs:
-    """Build outputs whose pin rests in the centres of two arcs of nearly equal radius; ``way`` is the swing between
-    them."""
+    """Build outputs whose pin rests in the centres of two arcs of nearly equal radius.
+
+    ``way`` is the swing, radians, from one rest to the other.
+    """
     rows, first, second = _select_best_pairs(pieces, _measure_extent(curves), 0.0)
     one, other = pieces[0].places[rows, first], pieces[1].places[rows, second]
     # One link serves both arcs, so that their radii are averaged.
@@ -258,7 +261,7 @@ def build_on_two_arcs(curves: Complex, pieces: tuple[Pieces, Pieces], kind: Kind
         return Outputs(rows, first, second, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
     sides = []
     for side in (1j, -1j):
-        # The two rests are seen from the pivot under the angle of the swing; it may lie on either side.
+        # Seen from the pivot, the two rests are separated by the swing. The pivot may lie on either side of them.
         pivot = 0.5 * (one + other) + side * chord / (2.0 * math.tan(0.5 * way))
         sides.append(np.stack([radius, pivot.real, pivot.imag, np.abs(one - pivot)], axis=1))
     return Outputs(np.tile(rows, 2), np.tile(first, 2), np.tile(second, 2), np.concatenate(sides))

@@ -1,7 +1,7 @@
 """Find starts for dwells of given lengths and places: sixbars of all types, scored by their motion alone.
 
-Outputs of coupler curves rest on arcs or lines: on the best of each curve for the longest dwell, or on two, each as
-long as a dwell of its own. Watt II sixbars, whose P moves back and forth on a circle about O4 or all around it, are
+Outputs of coupler curves rest on arcs or lines: on the best one of each curve for the longest dwell, or on two, each as
+long as one of the dwells. Watt II sixbars, whose P moves back and forth on a circle about O4 or all around it, are
 drawn at random.
 """
 
@@ -48,7 +48,7 @@ def find_placed_starts(
     rng: np.random.Generator,
     most: int,
 ) -> list[Start]:
-    """Find the most promising shapes, each of another fourbar.
+    """Find the most promising shapes, one for each fourbar.
 
     Parameters
     ----------

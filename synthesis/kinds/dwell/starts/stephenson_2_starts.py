@@ -165,7 +165,7 @@ def score_triads(
 
 
 def _place_at_dwell(shape: Real, begins: Real) -> Real:
-    """Return a shape with its pins at the begin of the first dwell, and with the angles at which the dwells begin."""
+    """Return a shape with its pins at the beginning of the first dwell, and the angles at which the dwells begin."""
     (b, d, e), stood = drive_shapes(shape[None], begins[None, :1], CYCLE_SAMPLE_COUNT).pins[0, 0], shape.copy()
     for at, pin in ((B, b), (D, d), (E, e)):
         stood[at], stood[at + 1] = pin.real, pin.imag

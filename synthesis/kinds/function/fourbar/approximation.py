@@ -37,12 +37,12 @@ RANDOM_COUNT, MAX_TURNING, MAX_RANDOM_RATIO = 40_000, 4000, 100.0
 """Random generators if a link must rotate fully: number sampled, maximum number kept, and maximum link ratio."""
 
 LEVELLED_COUNT, CONTINUATION_COUNT = 60, 2
-"""Number of best starts whose errors are levelled; and number of levelled linkages from which an optimum that has not
+"""Number of best starts whose errors are levelled, and number of levelled linkages from which an optimum that has not
 converged continues."""
 
 
 class Effort(NamedTuple):
-    """Number of starts in the first optimisation, its maximum steps, number of them continued, and maximum steps."""
+    """Effort of optimisation: number of starts and maximum steps, first for all, then for those that are continued."""
 
     starts: int
     first_rounds: int

@@ -50,10 +50,12 @@ FIRST_PAIR_COUNT, VALLEY_PAIR_COUNT = 9, 15
 """Numbers of pairs in the first descents, and in the first valleys."""
 
 MAX_FIRST_STEPS, FIRST_TOLERANCE, FIRST_WEIGHT, LIMIT_WEIGHT = 15, 1e-5, 0.1, 1.0
-"""First descents: maximum steps, relative decrease at which one ends, and weight of limits; last the later weight."""
+"""First descents: maximum number of steps, relative decrease at which a descent ends, and weight of limits. The last
+value is the weight of limits in later descents."""
 
 SELECTION_PROBABILITY = 0.35
-"""Probability that the best known sixbar is perturbed; otherwise the next one with the same probability, and so on."""
+"""Probability that the best known sixbar is perturbed. Otherwise the next one is chosen with the same probability, and
+so on."""
 
 MAX_MOVE_STEPS, MAX_DIRECTIONS, MAX_CHANGE = 400, 5, 0.6
 """Perturbation: steps along the valley after it, maximum number of directions, and maximum change of an unknown."""

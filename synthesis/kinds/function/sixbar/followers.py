@@ -56,13 +56,13 @@ class SixbarFollower:
         return SixbarFollower(self.kind, self.assembly, self.inputs[rows], self.outputs[rows])
 
     def errors(self, dimensions: Real, _signs: Real) -> Real:
-        """Return errors of sixbars (k, NUMBERS): shape (k, inputs), NaN if not assembled."""
+        """Return errors of sixbars (k, ROW_SIZE): shape (k, inputs), NaN if not assembled."""
         return np.array(
             [follow_sixbar(self.kind, self.assembly, at, self.inputs, self.outputs).errors for at in dimensions]
         )
 
     def derivatives(self, dimensions: Real, _errors: Real, _sign: float) -> Real:
-        """Return derivatives of one sixbar's errors by its steps: shape (inputs, NUMBERS)."""
+        """Return derivatives of one sixbar's errors by its steps: shape (inputs, ROW_SIZE)."""
         return follow_sixbar(self.kind, self.assembly, dimensions, self.inputs, self.outputs).slopes
 
     def apply_step(self, dimensions: Real, step: Real) -> Real:
@@ -114,7 +114,7 @@ class SixbarLimits:
         return generator
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """Return g and, on request, its derivatives by the steps: shapes (m,) and (m, NUMBERS)."""
+        """Return g and, on request, its derivatives by the steps: shapes (m,) and (m, ROW_SIZE)."""
         felt = self.felt if derivatives else math.inf
         there = follow_sixbar(self.kind, self.assembly, generator, self.inputs, np.zeros_like(self.inputs), felt)
         if not math.isfinite(there.tau):

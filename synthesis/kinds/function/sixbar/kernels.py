@@ -134,7 +134,7 @@ def _compute_relative_point(
 ) -> tuple[complex, complex, complex, complex, bool]:
     """Compute B, D and E of a Stephenson II from O2 in the input's frame (A on +x), E's derivative by τ, and success.
 
-    ``by`` (NUMBERS,) receives the derivatives of E by the numbers, the last by τ.
+    ``by`` (ROW_SIZE,) receives the derivatives of E by the numbers, the last by τ.
     """
     a, b = at[A], at[B]
     c = complex(at[7], at[8])
@@ -304,16 +304,16 @@ def follow(
     Parameters
     ----------
     kind, assembly : int
-    at : float, shape (NUMBERS,)
+    at : float, shape (ROW_SIZE,)
     inputs, outputs : float, shape (m,)
         u and v, monotonic.
     felt : float
         Cosines of a Stephenson II below this have no derivatives.
     errors : float, shape (m,)
         Output: radians, wrapped; NaN from the first input on at which the sixbar cannot be assembled.
-    slopes : float, shape (m, NUMBERS)
+    slopes : float, shape (m, ROW_SIZE)
         Output: derivatives of the errors.
-    cosines, by_cosine : float, shapes (m, 2) and (m, 2, NUMBERS)
+    cosines, by_cosine : float, shapes (m, 2) and (m, 2, ROW_SIZE)
         Output: values of both dyads; for Stephenson II the first are 0. Other entries are unchanged.
 
     Returns

@@ -42,10 +42,11 @@ def compute_log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
     Parameters
     ----------
     kind : int
-    at : float, shape (NUMBERS,)
+    at : float, shape (ROW_SIZE,)
         The sixbar's row.
     logs, slopes : float, shapes (MAX_LENGTHS,), (MAX_LENGTHS, ROW_SIZE)
-        Output. Steps are of logarithms for the numbers in :data:`kernels.IS_LOGARITHMIC`.
+        Output. Steps are of logarithms for the numbers in
+        :data:`~synthesis.kinds.function.sixbar.kernels.IS_LOGARITHMIC`.
 
     Returns
     -------

@@ -83,7 +83,7 @@ MAX_STEPS, DECREASE_TOLERANCE = 80, 1e-7
 """Descent: maximum number of steps, and relative decrease at which it ends."""
 
 MAX_EXACT_STEPS, EXACT_TOLERANCE = 200, 1e-13
-"""The same for the last descent to exact pairs."""
+"""Last descent to exact pairs: maximum number of steps, and relative decrease at which it ends."""
 
 MAX_ROUNDS, MAX_SQUARE_ROUNDS = 60, 15
 """Maximum number of steps in the final optimisation: linear programs, and a third of the number of quadratic ones."""
@@ -99,7 +99,7 @@ PAIR_TOLERANCE = math.radians(1e-6)
 """Maximum error at a pair, radians, of a sixbar that counts as meeting the given pairs."""
 
 MAX_FOLLOWED, MAX_FOLLOWED_STEPS = 16, 2000
-"""Maximum number of these that are followed along their valleys, and number of steps."""
+"""Maximum number of sixbars through nine pairs that are followed along their valleys, and number of steps."""
 
 MAX_SEARCHES, PROMISING_ERROR = 2, 1e-3
 """Maximum number of consecutive searches for pairs, and RMS error, radians, above which no other search follows."""

@@ -33,7 +33,8 @@ DISTANCES_FROM_A, DISTANCES_FROM_MIDDLE = (0.15, 3.0), (0.1, 4.0)
 O2 O4."""
 
 DISTANCES_FROM_O2, DISTANCES_FROM_B = (0.15, 3.0), (0.15, 3.0)
-"""The same for a Stephenson II: C from O2, in sizes of the fourbar, and E from B, in lengths of B D."""
+"""Ranges of sampled distances for a Stephenson II: C from O2, in sizes of the fourbar, and E from B, in lengths of B D.
+"""
 
 MIN_SWING_RATIO, MAX_SWING = 0.15, math.radians(170.0)
 """Swing of a Watt II's rocker, the first step: minimum relative to the input's rotation, and maximum in radians."""
@@ -43,7 +44,7 @@ EXACT_POINT_COUNT = 5
 
 
 class Starts(NamedTuple):
-    """Rows (k, NUMBERS) and the assembly of each."""
+    """Starting sixbars: rows (k, ROW_SIZE), and the assembly of each."""
 
     at: Real
     assemblies: NDArray[np.int64]

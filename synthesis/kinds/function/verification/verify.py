@@ -53,7 +53,8 @@ LEVEL_TOLERANCE = 1e-3
 """Relative tolerance for extremes that reach the maximum error."""
 
 OPPOSITE_ERROR_RATIO = 1e-3
-"""Error of the opposite assembly at a target, relative to that of the own one, below which the opposite one is used."""
+"""Ratio of the error at a target in the opposite assembly to that in the linkage's own assembly, below which the
+opposite assembly is used."""
 
 DIAL_TOLERANCE = 1e-9
 """Tolerance of a dial relative to its given values, radians or shares of the range; it covers rounding."""
@@ -244,8 +245,10 @@ def _compute_error(place: Real, wanted: Real, turn: float) -> Real:
 
 
 def _drive_to_targets(drive: Drive, targets: _DialTargets) -> tuple[DrivenStates, NDArray[np.int64]]:
-    """Drive the linkage to its targets, in its own assembly unless the other one is clearly closer; NaN if neither
-    closes."""
+    """Drive the linkage to its targets; errors are NaN where it closes in neither assembly.
+
+    The linkage stays in its own assembly at a target unless the other one is clearly closer.
+    """
     both = [drive.compute_positions(targets.angles, sign) for sign in (drive.assembly, -drive.assembly)]
     off = [np.where(d.valid, np.abs(_compute_error(d.place, targets.places, drive.turns)), np.inf) for d in both]
     opposite = (off[0] > TARGET_TOLERANCE) & (off[1] < OPPOSITE_ERROR_RATIO * off[0])

@@ -1,9 +1,9 @@
 """Selection of the trains that carry a given power: the order of their stages, their modules and their faces.
 
-The search ranks trains by error or size without regard to strength. They are judged in that order, so that the first
-that carry the power are the best that do; if all trains of the search were judged there is no other. Trains behind
-them are judged too, up to a limit, for the ties and the Pareto set. A train has to carry the power at the speed
-of each of its shafts; a mesh carries more power the faster it turns.
+The search ranks trains by error or size without regard to strength. Strength is judged in that order, so that the first
+trains that carry the power are the best ones. If all trains of the search were judged, there is no other. Trains that
+rank lower are judged too, up to a limit, for the ties and the Pareto set. A train must carry the power at the speed of
+each of its shafts; a mesh carries more power the faster it turns.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ INITIAL_JUDGED, MAX_JUDGED = 64, 1024
 """Number of trains judged at first, and at most."""
 
 MAX_ARRANGEMENTS = 10_000
-"""Number of stage orders, pairings and idlers of all trains together after which no further train is judged."""
+"""Total number of arrangements (stage orders, pairings, idlers) after which no further train is judged."""
 
 
 class CarryingTrain(NamedTuple):
-    """A train that carries the power: its stages, whose minimum faces are yet to be computed, and its idlers."""
+    """A train that carries the power: its stages, still without minimum faces, and its idlers."""
 
     train: Train
     stages: list[Stage]
@@ -59,9 +59,10 @@ class BuiltTrain(NamedTuple):
 class StrengthResult(NamedTuple):
     """Result of judging the trains of a search.
 
-    ``borne`` are the best trains that carry the power, ``front`` the Pareto set of all judged ones that do. ``failed``
-    counts the trains ranked above the last of them that do not; ``strongest`` is the greatest power in W that any train
-    carries (0: unknown, for trains with idlers). ``every``: the search has no trains besides the ``judged``.
+    ``borne`` are the best trains that carry the power, ``front`` is the Pareto set of all judged trains that do.
+    ``failed`` counts the trains ranked above the last of ``borne`` that do not carry it. ``strongest`` is the maximum
+    power in W that any train carries (0 if unknown, for trains with idlers). ``every`` is true if the ``judged`` trains
+    are all trains of the search.
     """
 
     borne: list[BuiltTrain]
@@ -74,7 +75,7 @@ class StrengthResult(NamedTuple):
 
 @dataclass
 class TrainJudge:
-    """Judges the power that the meshes of a problem carry; each mesh is judged once."""
+    """A cache of the power that the meshes of a problem carry, and the selection of trains by it."""
 
     problem: GearTrainProblem
     task: Task
@@ -104,7 +105,7 @@ class TrainJudge:
         return self._check_faces(train, stages, [])
 
     def _try_with_idler(self, train: Train) -> CarryingTrain | None:
-        """Put an idler into one stage, which then need not carry the power without it."""
+        """Put an idler into one stage, which then is not required to carry the power without it."""
         loaded = list(self._list_loaded_stages(train))
         plain = [self._find_smallest(choices, (), speed) for choices, speed in loaded]
         weak = {number for number, stage in enumerate(plain, 1) if stage is None}
@@ -169,7 +170,7 @@ class TrainJudge:
         return power >= self.stated.power * (1.0 - EQUALITY_TOLERANCE)
 
     def _compute_power(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float:
-        """Return the greatest power that all meshes of a stage carry."""
+        """Return the maximum power that all meshes of a stage carry."""
         return min(
             self._get_judge(mesh).compute_max_power(turning) for mesh, turning in _list_meshes(stage, idlers, speed)
         )
@@ -178,7 +179,7 @@ class TrainJudge:
         """Return the smallest face, in the problem's unit, at which all meshes of a stage carry the power."""
         # Idlers add meshes with their own loads.
         meshes = _list_meshes(stage, idlers, speed)
-        # One face serves all meshes of a stage: their common minimum is what counts.
+        # All meshes of a stage have the same face: compute their common minimum.
         loaded = [self._get_judge(mesh).replace_power(self.stated.power, turning) for mesh, turning in meshes]
         width = find_common_width(loaded, self.stated.required_safeties)
         return None if width is None else width / self._unit
@@ -221,12 +222,13 @@ def _list_meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterato
 def list_arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Train]:
     """List a train with its stages in every order and its gears in every permitted pairing.
 
-    Reverted trains keep their pairing. The smallest largest stage ratio comes first, and the train itself among equals.
+    Reverted trains keep their pairing. Trains are sorted by their largest stage ratio, smallest first; among equals the
+    train itself comes first.
     """
     k = len(train.drivers)
     numbers = [(set(task.drivers[i].tolist()), set(task.driven[i].tolist()), task.stages(k, i)) for i in range(k)]
     found = set()
-    # Gears change places only between stages of one likeness.
+    # Gears change places only between stages of equal likeness.
     orders = [
         places
         for places in itertools.permutations(range(k))

@@ -1,4 +1,4 @@
-"""Construction of a train from the search: its modules and shifts, and an idler if it turns in the wrong direction."""
+"""Construction of a train found by the search: modules, profile shifts, and an idler if the direction requires one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def build_stages(problem: GearTrainProblem, task: Task, train: Train) -> list[St
         ]
     stages = []
     for number, ((driver, driven), mark) in enumerate(zip(train.meshes, train.marks, strict=True)):
-        # In a reverted train every stage chooses its module (the mark); otherwise the list gives one per stage.
+        # In a reverted train the mark selects the module of each stage. Otherwise the list gives one module per stage.
         place = mark if problem.reverted else min(number, len(task.modules) - 1)
         plain = Stage(driver=driver, driven=driven, module=float(task.modules[place]))
         stages.append(_add_type(problem, task, number, plain))
@@ -53,7 +53,7 @@ def _add_type(problem: GearTrainProblem, task: Task, number: int, stage: Stage) 
 def list_choices(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:
     """List the meshes with every module that is compatible with the other meshes, the smallest module first.
 
-    ``known`` caches the stages with a distance of their own; it is written to.
+    ``known`` is a cache of the stages with a distance of their own, to which this function adds entries.
     """
     fit = task.fit
     if fit is None or fit.shares_distance:
@@ -103,7 +103,7 @@ def assemble_mechanism(
 def compute_sign(problem: GearTrainProblem, meshes: int) -> int:
     """Return the sign of the ratio of a train with this number of meshes, or of the given stages.
 
-    If shafts are not parallel it is the sign of rotations about their axes, as a mechanism reports them.
+    If the shafts are not parallel, the sign refers to rotations about their axes as a mechanism reports them.
     """
     if problem.stages is None:
         return int((-1) ** meshes)
@@ -125,9 +125,10 @@ def iterate_idler_choices(problem: GearTrainProblem, task: Task, train: Train) -
 def _iterate_idlers(problem: GearTrainProblem, task: Task, train: Train, coprime: bool) -> Iterator[Idler]:
     """Yield idlers that keep the constraints on meshes, the best first.
 
-    An idler between the sizes of the two gears of a stage never interferes if they do not with one another: it is no
-    larger a mate of the smaller and no smaller a mate of the larger. The gears of its stage need not mesh
-    with one another, those of the other stages must. ``coprime``: all meshes without a common divisor.
+    If the two gears of a stage do not interfere with each other, an idler of intermediate size interferes with neither:
+    it is no larger than the larger gear as a mate of the smaller one, and no smaller than the smaller gear as a mate of
+    the larger one. The gears of the idler's stage are not required to mesh with each other; those of the other stages
+    are. With ``coprime``, no mesh may have a common divisor of its tooth numbers.
     """
     # Gears of the stock that the train does not use.
     spare = Counter(problem.count_stock()) - Counter(train.drivers + train.driven)

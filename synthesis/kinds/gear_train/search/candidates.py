@@ -1,9 +1,9 @@
 """The finite sets of trains that a search covers, ready for the compiled loops.
 
-:class:`Halves` are all choices of drivers and all choices of driven gears, whose products meet in the middle: k gears
-of n tooth numbers are only C(n+k−1, k) multisets, and the ratio does not depend on the pairing. :class:`Meshes` are all
-meshes a:b, in groups of equal centre distance for reverted trains, or in one group if the constraints on the meshes
-leave so few of them that this list is shorter than the choices of drivers and driven gears.
+:class:`Halves` lists all choices of drivers and all choices of driven gears, whose products meet in the middle: k gears
+of n tooth numbers are only C(n+k−1, k) multisets, and the ratio does not depend on the pairing. :class:`Meshes` lists
+all meshes a:b. They form groups of equal centre distance for reverted trains. They form one group if the constraints
+leave so few meshes that this list is shorter than the choices of drivers and driven gears.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from synthesis.kinds.gear_train.search.task import Task
 from synthesis.kinds.gear_train.statement.search_size import MAX_ENUMERATED_TRAINS
 
 WINDOW_MARGIN = 1e-9
-"""Share by which a window of ratios is widened, so that the rounding of its powers loses no train."""
+"""Relative widening of a window of ratios, so that the rounding of powers excludes no train."""
 
 MIN_SORTED_TRAINS = 10_000_000
-"""Number of trains of two halves above which sorting them once more saves time."""
+"""Number of trains of two halves above which sorting the halves by product as well saves time."""
 
 _NO_TIES = np.zeros((0, 2), np.int64)
 
@@ -52,7 +52,7 @@ class Candidates(Protocol):
         """Return a lower bound of the sizes in a part and all later ones."""
 
     def finish(self, first: int, rule: Rule, shortlist: Shortlist) -> bool:
-        """Search all parts from ``first`` on at once if that is little work; return whether it was done."""
+        """Search all parts from ``first`` on at once if this takes little work; return whether it was done."""
 
     def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Shortlist) -> int:
         """Count the trains with exactly one of these ratios; ``shortlist`` holds a search's result."""
@@ -111,14 +111,14 @@ class Halves:
     def finish(self, first: int, rule: Rule, shortlist: Shortlist) -> bool:
         """Search both lists in one pass by product, if too few trains are near for separate passes by size."""
         size = self.bound_size(first)
-        # Until the shortlist is full, or for sizes that still rank, a pass would meet too many trains.
+        # Until the shortlist is full, and for sizes that still rank, one pass would find too many trains.
         settled = shortlist.kept[0] == len(shortlist.error) and (not rule.by_size or size > shortlist.size[-1])
         if not settled or self.combinations < MIN_SORTED_TRAINS:
             return False
         near = max(
             float(shortlist.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else shortlist.error[-1]
         )
-        # The products spread over a few powers of e: about this many pairs are as near as ``near``.
+        # The products span a few powers of e, so that about combinations · near pairs are as near as ``near``.
         if self.combinations * near > MAX_ENUMERATED_TRAINS:
             return False
         orders = [np.argsort(half.products, kind="stable") for half in (self.drivers, self.driven)]
@@ -223,7 +223,8 @@ def list_coaxial_meshes(task: Task, k: int) -> Meshes:
 def list_few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float) -> Meshes | None:
     """List trains of the meshes that can still reach the target, if they are few; None if they are many.
 
-    If every stage ratio is within ``reach``, a stage of a train near enough has at least T (1 − t) / reach₁^(k−1).
+    If every stage ratio is within ``reach``, each stage of a train that is near enough has a ratio of at least
+    T (1 − t) / reach₁^(k−1).
     """
     if task.fit is not None:
         return _list_few_fitted(task, k)
@@ -231,7 +232,7 @@ def list_few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: f
         return None
     low, high = reach
     ratio = float(task.target)
-    # The other k − 1 stages can contribute at most (least) their extreme ratios.
+    # The other k − 1 stages contribute at most their maximum and at least their minimum ratios.
     least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - WINDOW_MARGIN)
     most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + WINDOW_MARGIN)
     a, b, mark = _list_meshes(task, 0, 1, task.allowed)
@@ -251,7 +252,7 @@ def _list_few_fitted(task: Task, k: int) -> Meshes | None:
 
 
 def compute_stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
-    """Return the least and greatest ratio of each stage's allowed meshes; empty if a stage has none."""
+    """Return the minimum and maximum ratio of each stage's allowed meshes; empty if a stage has none."""
     reaches = []
     for i in range(k):
         a, b, _ = _list_meshes(task, i, 1, task.stages(k, i))
@@ -302,8 +303,7 @@ def _group_meshes(task: Task, k: int, stages: list[tuple[Integers, Integers, Int
     least = np.array([_compute_least_size(size, group, task.largest, k) for group in joined], np.int64)
     if task.most_total is not None and not task.largest:
         joined, least = joined[least <= task.most_total], least[least <= task.most_total]
-    # Rising bounds let the search stop as soon as no smaller train can follow.
-    # Groups in rising order of their smallest train allow an early stop.
+    # Groups in rising order of their smallest train let the search stop as soon as no smaller train can follow.
     rising = np.argsort(least, kind="stable")
     groups = np.ascontiguousarray(joined[rising], np.int64)
     counts = np.diff(groups, axis=1)

@@ -43,7 +43,7 @@ def list_every_train(task: Task) -> EveryTrain:
     drivers, driven = rows[:, :MAX_STAGES].astype(np.int64), rows[:, MAX_STAGES : 2 * MAX_STAGES].astype(np.int64)
     return EveryTrain(
         rows,
-        # Missing stages have zero teeth, which must not annul the products.
+        # Missing stages have zero teeth, which must not make the products zero.
         np.maximum(driven, 1).prod(axis=1),
         np.maximum(drivers, 1).prod(axis=1),
         drivers.sum(axis=1) + driven.sum(axis=1),
@@ -64,7 +64,7 @@ def _list_stage_trains(task: Task, k: int) -> Gears:
             number = _combine_coaxial(k, *lists, rule, rows)
         else:
             number = _combine_halves(k, halves.drivers.teeth, halves.driven.teeth, rule, rows)
-        # The compiled loop goes on counting after the array is full, so that one repetition suffices.
+        # The compiled loop continues to count after the array is full, so that one repetition suffices.
         if number <= room:
             return rows[:number]
         # The count of the failed pass is the exact size needed.

@@ -33,10 +33,10 @@ SPLITTER = 134217729.0
 """2²⁷ + 1: splits a float of 53 bits into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
 
 DISTANCE_TOLERANCE = 1e-13
-"""Share of a distance by which the intervals of coaxial meshes may miss one another by rounding."""
+"""Gap between the distance intervals of coaxial meshes, as a share of the distance, that is attributed to rounding."""
 
 WINDOW_MARGIN = 1e-12
-"""Share by which the window of errors is widened: rounding must not lose a train, and the order is exact later."""
+"""Relative widening of the window of errors, so that rounding excludes no train. The exact order is found later."""
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -64,13 +64,13 @@ def compute_divisor(a: int, b: int) -> int:
 
 @njit(cache=True, nogil=True, inline="always")
 def _compute_window(ranked: float, front: float, tolerance: float) -> float:
-    """Return the error up to which hits matter, slightly widened: rounding must not lose one."""
+    """Return the maximum error of trains that matter, slightly widened, so that rounding excludes none."""
     return min(max(ranked, front), tolerance) * (1.0 + WINDOW_MARGIN) + TIE_TOLERANCE
 
 
 @njit(cache=True, nogil=True)
 def _compute_ranked_error(size: int, shortlist: Shortlist, by_size: bool) -> float:
-    """Return the error up to which a train of a size enters the shortlist by its rank; 0 if none does."""
+    """Return the maximum error with which a train of the given size enters the shortlist by rank; 0 if none can."""
     last = len(shortlist.error) - 1
     if shortlist.kept[0] <= last:
         return np.inf
@@ -102,7 +102,8 @@ def match(
     """Meet in the middle: all drivers × all driven gears, for sizes from ``from_size`` up to and without ``to_size``.
 
     The rows of ``drivers`` of size u are ``driver_starts[u]`` to ``driver_starts[u + 1]``, sorted by product;
-    ``driven`` likewise. For each pair of sizes one pass over both lists finds every pair whose error could matter.
+    ``driven`` has the same layout. For each pair of sizes, one pass over both lists finds all pairs with errors that
+    could matter.
     """
     teeth = np.zeros(3 * MAX_STAGES, np.int64)
     # The Pareto front so far: a train must be nearer than all smaller ones to enter it.
@@ -161,7 +162,8 @@ def match_all(
 ) -> None:
     """Match like :func:`match`, for all sizes from ``from_size`` up in one pass over both lists sorted by product.
 
-    It meets every train near enough for the smallest of these sizes, so it is only efficient if those are few.
+    The pass visits every train that is near enough for the smallest of these sizes, so that it is only efficient if
+    there are few such trains.
     """
     teeth = np.zeros(3 * MAX_STAGES, np.int64)
     capacity, middle = len(shortlist.error), 0
@@ -270,7 +272,7 @@ def enumerate_tuples(values: Integers, starts: Integers, counts: Integers, order
 
 @njit(cache=True, nogil=True)
 def has_common_distance(distances: Real, place: Integers, k: int) -> bool:
-    """Return whether k meshes have a common distance: if so, an interval of one of them begins at such a distance."""
+    """Return whether k meshes have a common distance; it suffices to test the lower ends of their intervals."""
     for i in range(k):
         for p in range(distances.shape[1]):
             distance, agreed = distances[place[i], p, 0], 0
@@ -287,7 +289,7 @@ def has_common_distance(distances: Real, place: Integers, k: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _find_ratio(ratio: Real, wanted: float, low: int, end: int) -> int:
-    """Return the first place from ``low`` on with a ratio of at least ``wanted``; ratios do not fall."""
+    """Return the first place from ``low`` on with a ratio of at least ``wanted``, in ratios of non-decreasing order."""
     while low < end:
         half = (low + end) // 2
         if ratio[half] < wanted:
@@ -311,7 +313,7 @@ def _is_tied(numerator: int, denominator: int, tied: Integers) -> bool:
 def _is_counted(
     teeth: Integers, canonical: Integers, distances: Real, place: Integers, k: int, coaxial: bool, rule: Rule
 ) -> bool:
-    """Return whether a train is possible, and the one of its gears that counts; ``canonical`` is scratch."""
+    """Return whether a train is possible and is the one that counts for its gears; ``canonical`` is a work array."""
     sound = has_common_distance(distances, place, k) and is_within_limits(teeth, k, rule)
     if sound and not coaxial and not rule.ordered:
         # The canonical train has drivers and driven gears sorted: its best pairing must be the
@@ -352,7 +354,7 @@ def _complete_trains(
         while low <= j < end:
             ranked = _compute_ranked_error(least_size[g], shortlist, rule.by_size)
             if len(tied) > 0:
-                # Counting ties: exactly the error of the best train is of interest.
+                # For counting ties, only the error of the best train is of interest.
                 ranked = front = shortlist.error[0]
             if abs(ratio[j] - wanted) > _compute_window(ranked, front, rule.tolerance) * wanted:
                 break
@@ -397,14 +399,14 @@ def combine(
 ) -> None:
     """Combine trains of one mesh a:b from each stage's list, for the groups from ``first`` up to and without ``last``.
 
-    In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, sorted by the ratio b/a; without
-    ``rule.ordered`` they are one list, and every multiset occurs once. All stages but one are enumerated and the
-    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not decrease. The meshes of a
-    train agree on a distance within one of the intervals ``distances[row]`` of each. With ``coaxial`` the
-    pairing is fixed, and of the places of the meshes one choice counts; otherwise only the pairing that ``pair_up``
-    would choose counts, so that gears occur once.
+    In a group, the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, sorted by the ratio b/a. Without
+    ``rule.ordered`` they are one list, and every multiset occurs once. All stages except the last are enumerated, and
+    the fitting meshes of the last stage are found by bisection. ``least_size`` of the groups must not decrease. The
+    meshes of a train must agree on a distance within one of the intervals ``distances[row]`` of each. With
+    ``coaxial``, the pairing is fixed, and only one order of the meshes counts. Otherwise only the pairing that
+    ``arrange_pairs`` would choose counts, so that each set of gears occurs once.
 
-    With fractions in the rows of ``tied`` nothing is entered; the trains of exactly these ratios are counted.
+    If ``tied`` has rows of fractions, no train is entered, and the trains with exactly these ratios are counted.
     """
     teeth, canonical = np.zeros(3 * MAX_STAGES, np.int64), np.zeros(3 * MAX_STAGES, np.int64)
     place = np.zeros(MAX_STAGES + 1, np.int64)

@@ -20,13 +20,13 @@ MAX_STAGES = 4
 class Rule(NamedTuple):
     """The constraints on a candidate train, and the ranking of candidates.
 
-    With ``by_mesh``, ``allowed[a, b]`` are the permitted meshes; with ``by_stock``, ``stock[t]`` is the number of gears
-    of t teeth; with ``by_stage``, stage i may only have the meshes of ``of_stage[i]``. ``with_idler``: in one
-    stage, with a pair from ``idled``, an idler is placed between the gears and must mesh soundly (``sound``) with both;
-    it uses one more gear of a stock. ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of
-    their own, for place i of a train's teeth from ``least[i]`` to ``most[i]``. ``by_size``: the smallest trains first,
-    else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth. Gears change
-    places only between stages of one ``likeness``.
+    With ``by_mesh``, ``allowed[a, b]`` are the permitted meshes. With ``by_stock``, ``stock[t]`` is the number of gears
+    with t teeth. With ``by_stage``, stage i may only have the meshes of ``of_stage[i]``. With ``with_idler``, an idler
+    is placed between the gears of one stage with a pair from ``idled``. The idler must mesh soundly (``sound``) with
+    both gears and uses one more gear of the stock. ``most_total`` bounds the sum of all teeth. With ``ordered``, stages
+    have ranges of their own, from ``least[i]`` to ``most[i]`` for place i of a train's teeth. ``by_size`` ranks the
+    smallest trains first, otherwise the nearest. With ``largest``, the size of a train is its largest gear, otherwise
+    the sum of all teeth. Gears change places only between stages of equal ``likeness``.
     """
 
     target: float
@@ -109,7 +109,7 @@ def is_allowed(teeth: Integers, k: int, rule: Rule) -> bool:
 
 @njit(cache=True, nogil=True)
 def compute_widest_ratio(teeth: Integers, k: int) -> float:
-    """Return the largest stage ratio, larger over smaller gear; equal ratios are exactly equal, being rounded once."""
+    """Return the largest stage ratio, larger over smaller gear. Equal ratios give equal floats (one rounding each)."""
     ratio = 1.0
     for i in range(k):
         a, b = teeth[i], teeth[MAX_STAGES + i]
@@ -163,9 +163,10 @@ def is_among_alike(k: int, order: int, likeness: Integers, moved: Integers) -> b
 
 @njit(cache=True, nogil=True)
 def is_foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
-    """Return whether a train represents all trains with its gears in other places (``coaxial``: its meshes).
+    """Return whether a train represents all trains with its gears (if ``coaxial``, its meshes) in other places.
 
-    Among those within the ranges it has the smallest largest stage ratio, and then the smallest first numbers.
+    Among the trains within the ranges, the representative has the smallest maximum stage ratio. Ties are broken by the
+    lexicographically smallest tooth numbers.
     """
     if not is_allowed(teeth, k, rule):
         return False
@@ -199,10 +200,11 @@ def is_foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
 
 @njit(cache=True, nogil=True)
 def arrange_pairs(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Reorder the driven gears of a train for the smallest largest stage ratio; return False if no order is allowed.
+    """Reorder the driven gears of a train for the smallest maximum stage ratio; return False if no order is allowed.
 
-    Without ranges by place both come in rising order, the pairing with the smallest largest stage ratio;
-    if that is not allowed the others are tried. With ranges every order comes separately, and only the foremost counts.
+    Without ranges by place, drivers and driven gears are passed in rising order, the pairing with the smallest maximum
+    stage ratio. If this is not allowed, the other orders are tried. With ranges, every order is passed separately, and
+    only the representative counts (:func:`is_foremost`).
     """
     if rule.ordered:
         return is_foremost(teeth, k, rule, False)

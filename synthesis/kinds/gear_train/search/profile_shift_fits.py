@@ -38,12 +38,12 @@ class FittedStage(NamedTuple):
 class Fit:
     """The meshes that can be fitted.
 
-    ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages if they are
-    alike), −1 if none fits. ``ends[s, m, a, b]`` are the intervals of distances of a pair with module m in stage s,
-    least and greatest, padded with nan, if stages must agree on one; empty otherwise. ``fits[s, m, a, b]`` is true if
-    module m fits a pair in a stage with a distance of its own. ``modules`` are lengths.
-    ``demands[s]`` are those of a stage in the plane of rotation, the plane of all modules here; they are ``stretch[s]``
-    times as long as in the normal plane.
+    ``module[s, a, b]`` is the index of the module that a pair has in stage s (one row for all stages if they are
+    alike), −1 if none fits. ``ends[s, m, a, b]`` are the intervals of distances of a pair with module m in stage s, as
+    minimum and maximum, padded with nan, if stages must agree on a distance; empty otherwise. ``fits[s, m, a, b]`` is
+    true if module m fits a pair in a stage with a distance of its own. ``modules`` are lengths. ``demands[s]`` are the
+    constraints of a stage in the plane of rotation, to which all modules here refer. Modules are ``stretch[s]`` times
+    as long there as in the normal plane.
     """
 
     demands: tuple[PairConstraints, ...]
@@ -76,7 +76,8 @@ class Fit:
     def fit_train(self, drivers: tuple[int, ...], driven: tuple[int, ...], marks: tuple[int, ...]) -> list[FittedStage]:
         """Fit the stages of a train: modules, shifts nearest to balanced specific sliding, and distances.
 
-        Within a range of distances the one nearest to the pitch circles' is chosen; for coaxial stages, to their mean.
+        Within a range of distances, the distance nearest to the sum of the pitch radii is chosen; for coaxial stages,
+        nearest to the mean of these sums.
         """
         meshes = list(zip(drivers, driven, strict=True))
         if self.shares_distance:
@@ -136,7 +137,7 @@ class Fit:
         # The distance determines the sum of shifts; the split balances specific sliding.
         working = shifting.from_distance(small, large, distance / self._get_module(row, place), demands)
         first = float(shifting.find_balanced_split(small, large, working, demands))
-        # Clip what rounding adds to a shift beyond its limits.
+        # Clip shifts that exceed their limits by rounding.
         one, two = (
             min(max(shift, demands.least_shift), demands.most_shift) * self.stretch[row]
             for shift in (first, float(working.total) - first)
@@ -200,7 +201,7 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
     every = np.zeros((rows, len(modules), n, n), np.bool_)
     for row, (low, high) in enumerate(limits):
         nearest = np.full((n, n), math.inf)
-        # Tried in rising order, so that the smallest of equally near modules wins.
+        # Modules are tried in rising order, so that the smallest of equally near ones is chosen.
         for place in sorted(_list_choices(problem, row, modules), key=modules.__getitem__):
             module = modules[place] * stretch[row]
             fits = np.isfinite(
@@ -215,7 +216,7 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
 
 
 def _convert_to_modules(limits: tuple[float, float], module: float) -> tuple[float, float]:
-    """Convert limits of a distance to modules; no limits if there is no greatest."""
+    """Convert limits of a distance to modules; no limits if there is no maximum."""
     low, high = limits
     return (low / module, high / module) if math.isfinite(high) else (0.0, math.inf)
 

@@ -1,4 +1,4 @@
-"""Search for the best gear trains, with its proof.
+"""Search for the best gear trains, with a proof that none is better.
 
 Every number of stages is searched in turn, with its own
 :class:`~synthesis.kinds.gear_train.search.candidates.Candidates`. The compiled loops keep a few more trains than
@@ -39,13 +39,13 @@ from synthesis.model.gears.ratio_target import RatioTarget
 from synthesis.results.exhaustive import select_pareto
 
 ZERO_WINDOW = 1e-15
-"""Addition to a tolerance, so that rounding loses no exact train at a tolerance of zero."""
+"""Amount added to a tolerance, so that rounding excludes no exact train at a tolerance of zero."""
 
 SPARE_COUNT = 54
-"""Number of trains kept beyond the requested ones."""
+"""Number of trains that the loops keep in addition to the requested ones."""
 
 ORDER_TOLERANCE = 1e-11
-"""Relative difference of errors above which the loops surely sorted them correctly."""
+"""Relative difference of errors above which the order of the compiled loops is certainly correct."""
 
 PROGRESS_PARTS = 25
 """Number of parts of a search between which progress is reported."""
@@ -98,7 +98,7 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     Returns
     -------
     Outcome
-        ``reach``: bounds of the ratios that the meshes permit, None if there is no train at all. ``nearest``: the
+        ``reach`` are bounds of the ratios that the meshes permit, None if there is no train at all. ``nearest`` is the
         nearest train of all, if none is within the tolerance but the target is within reach.
     """
     # Numbers of stages without any train have no reach.
@@ -121,7 +121,7 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
         elif outcome.trains:
             outcome = outcome._replace(trains=anyhow.trains)
         elif anyhow.trains:
-            # A target outside the attainable ratios gets no trains: the nearest would only be an extreme.
+            # For a target outside the attainable ratios, the nearest train would only be an extreme one: return none.
             whole = _tighten_reach(task, every, whole, [train.ratio for train in anyhow.trains])
             outcome = anyhow if _is_within_reach(task.target, whole, 0.0) else outcome
     combinations = sum(_count_covered(task, k) for k in task.stage_counts)
@@ -189,7 +189,7 @@ def _find_last_size(task: Task, shortlist: Shortlist) -> float:
     if not full or exact is None or shortlist.least_error.min() > ERROR_NOISE:
         return math.inf
     rows = shortlist.teeth if not task.by_size else shortlist.least_teeth[shortlist.least_error <= ERROR_NOISE]
-    # By size one exact train ends the search of errors; by error all kept ones must be exact.
+    # Ranked by size, one exact train suffices; ranked by error, all kept trains must be exact.
     settled = (all if not task.by_size else any)(_decode_train(row).ratio == exact for row in rows)
     return float(shortlist.size.max()) if settled else math.inf
 
@@ -239,8 +239,9 @@ def _tighten_reach(
 ) -> tuple[Fraction, Fraction]:
     """Tighten the bounds of the ratios by a train's own ratio, at an end beyond which the target may lie.
 
-    Meshes may each be allowed although no train has them together: with a stock, a common distance, or too many teeth.
-    The train nearest to a bound gives the end; it is searched if no train lies beyond the target.
+    Meshes may be allowed individually although no train has all of them together, because of a stock, a common
+    distance, or the total number of teeth. The train nearest to a bound then gives the attainable end. It is only
+    searched if no train lies beyond the target.
     """
     low, high = bounds
     extreme = partial(

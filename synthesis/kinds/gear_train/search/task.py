@@ -29,16 +29,17 @@ UNLIMITED_TOLERANCE = 1e9
 class Task:
     """Input of the search.
 
-    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; ``ordered`` stages have their own,
-    otherwise all have the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
-    in a unit in which all are whole numbers. ``fit`` holds the meshes whose teeth are fitted to their distances.
+    ``drivers[i]`` and ``driven[i]`` are the tooth numbers of stage i in rising order. With ``ordered``, each stage has
+    its own numbers; otherwise all stages have the same. ``stock[t]`` is the number of gears with t teeth, empty without
+    a stock. ``pitches`` are the modules in a unit in which all are whole numbers. ``fit`` holds the meshes with teeth
+    that are fitted to their distances.
 
     For stages that are given one by one (``stated``), ``own[i]`` are the permitted meshes of stage i, unless all are
-    alike, and gears change places only between stages of one ``likeness``.
+    alike. Gears change places only between stages of equal ``likeness``.
 
-    Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
-    one another, only with the idler: ``sound[a, b]`` are the permitted meshes, ``idled[a, b]`` the pairs between which
-    an idler can be placed, ``allowed[a, b]`` the pairs that form a stage without one.
+    Trains of ``idler_counts`` stages need one of the ``idlers`` in one stage. The driver and the driven gear of this
+    stage only mesh with the idler, not with each other. ``sound[a, b]`` are the permitted meshes, ``idled[a, b]`` the
+    pairs between which an idler can be placed, and ``allowed[a, b]`` the pairs that form a stage without an idler.
     """
 
     target: RatioTarget

@@ -1,4 +1,4 @@
-"""Contradictions in a requested gear train: errors that no single field shows."""
+"""Contradictions between several fields of a requested gear train."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FITTED_TYPES = ("external", "helical")
 
 
 def find_train_contradictions(train: GearTrainBase) -> list[Contradiction]:
-    """Return all contradictions by field; the size of the search is only checked if the lists suit the stages."""
+    """Return all contradictions by field; the size of the search is only checked if the lists match the stages."""
     unsuited = [*_check_lists(train), *_check_fit(train)]
     return [
         *_check_stages(train),

@@ -1,8 +1,8 @@
-"""Pinions that run in rings.
+"""Pairs of a pinion and a ring that run together.
 
-A pinion runs in a ring under these conditions: the ring, its teeth shortened to clear the pinion's fillet, still passes
-the pinion's tips, is not reached in its own fillet, and keeps a pair of teeth in contact; and the cutter that shapes
-the ring also passes its tips, so that it does not trim them.
+The teeth of the ring are shortened to clear the pinion's fillet. A pinion runs in the ring if the tips of both still
+pass each other, if the pinion does not reach the ring's own fillet, and if at least one pair of teeth is always in
+contact. The cutter that shapes the ring must pass its tips as well, so that it does not trim them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from synthesis.kinds.gear_train.statement.stages import RequestedStage
 from synthesis.model.gears import mesh_limits
 
 MIN_CONTACT_RATIO = 1.0
-"""Contact ratio of a ring with its pinion: with less there are moments without contact."""
+"""Minimum contact ratio of a ring with its pinion: below it there are moments without contact."""
 
 MIN_RING_ADDENDUM = 0.3
 """Minimum addendum of a ring's shortened teeth, modules."""

@@ -18,7 +18,7 @@ MAX_ENUMERATED_TRAINS = 20_000_000
 """Maximum number of trains that are enumerated one by one."""
 
 MAX_COAXIAL = 3_000_000_000
-"""Maximum number of combinations of all stages but one in a search of coaxial trains; a minute or two."""
+"""Maximum number of combinations of all stages but one in a search of coaxial trains, which takes a minute or two."""
 
 MAX_FITTED = 500
 """Maximum number of tooth numbers whose pairs are fitted to a range of distances; some 10⁵ pairs."""

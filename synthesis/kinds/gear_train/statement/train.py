@@ -33,11 +33,12 @@ MAX_PITCH_MULTIPLE = 10**9
 """Modules are compared as whole multiples of their common measure; this is the largest multiple."""
 
 ROUNDING_MARGIN = 1e-12
-"""Share by which a limit of teeth is lowered before it is rounded up: at 30° it is 8, not the 9 of a rounded sine."""
+"""Share by which a minimum number of teeth is lowered before it is rounded up. At 30° it is 8, whereas the rounded sine
+would give 9."""
 
 DEFAULT_TOLERANCE = Fraction(1, 100)
-"""Relative error up to which trains are of interest if no tolerance is given: those of the Pareto set, and those among
-which the smallest are sought. The smallest of all trains, with any error, would be no answer to a ratio."""
+"""Maximum relative error of trains in the Pareto set, and of the smallest trains, if no tolerance is given. Without
+this limit the smallest trains would ignore the requested ratio."""
 
 DEFAULT_MAX_TEETH = 100
 """Maximum number of teeth if none is given."""
@@ -259,7 +260,7 @@ class GearTrainBase(ProblemBase):
 
     @property
     def shift_limits(self) -> tuple[float, float]:
-        """Least and greatest profile shift, modules."""
+        """Minimum and maximum profile shift, modules."""
         if self.shift is not None:
             return self.shift.min, self.shift.max
         return DEFAULT_SHIFT_LIMITS if self.centre_distance is not None else (0.0, 0.0)
@@ -275,7 +276,7 @@ class GearTrainBase(ProblemBase):
         return DEFAULT_MIN_TIP_THICKNESS if self.min_tip_thickness is None else self.min_tip_thickness
 
     def get_distance_limits(self, stage: int) -> tuple[float, float]:
-        """Return the least and greatest centre distance of a stage, counted from 0; 0 and infinity by default."""
+        """Return the minimum and maximum centre distance of a stage, counted from 0; 0 and infinity by default."""
         stated = self.centre_distance
         if isinstance(stated, DistanceRange):
             return stated.min, stated.max

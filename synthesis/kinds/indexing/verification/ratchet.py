@@ -1,8 +1,8 @@
 """Verification of a ratchet: its outline is turned under its pawls, and the forces of held teeth are summed.
 
-From the outline's corners, the pivots and the noses alone: the stops of a turn and the number of pawls at each;
-that a pawl is drawn in from every point of a face; the total torque of the pawls; the lift of a pawl by a passing
-tooth, and that it falls to the foot.
+Only the outline's corners, the pivots and the noses are used. They give the stops of a turn with the number of pawls
+at each, the total torque of the pawls, and the lift of a pawl by a passing tooth. It is also checked that a pawl is
+drawn in from every point of a face, and that it falls to the foot.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _check_stops(mechanism: RatchetMechanism, feet: Complex, noses: Complex) -> 
 
 
 def _measure_locking_angle(feet: Complex, tips: Complex, pivots: Complex, noses: Complex) -> float:
-    """Measure the least angle, degrees, from the pivot's line to the face's normal, over the held face."""
+    """Measure the minimum angle, degrees, from the pivot's line to the face's normal, over the held face."""
     # With the first tooth held by the first pawl.
     points = feet[0] + (tips[0] - feet[0]) * np.linspace(0.0, 1.0, FACE_POINT_COUNT)
     normal = (tips[0] - feet[0]) * -1j
@@ -161,6 +161,6 @@ def _check_reported_angles(
 
 
 def _is_open_behind_tip(mechanism: RatchetMechanism, feet: Complex, tips: Complex) -> bool:
-    """Return whether a nose off the tip finds the space behind it open: the back falls all the way to the foot."""
+    """Return whether the space behind the tip is open for a nose that leaves it: the back falls down to the foot."""
     back = np.roll(tips, 1) - feet
     return bool((back * feet.conj()).real.min() > 0.0) and len(feet) == mechanism.teeth

@@ -1,8 +1,7 @@
 """Verification of a Geneva drive: its roller is driven through its slots, its disc past its wheel.
 
-Nothing but the answer is used: motion and forces follow from the roller's path
-(:mod:`synthesis.kinds.indexing.reactions`), walls and distances from the outlines, the work of the crank from an
-integral.
+Only the answer is used. Motion and forces follow from the roller's path (:mod:`synthesis.kinds.indexing.reactions`),
+walls and distances from the outlines, and the work of the crank from an integral.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ SAMPLE_COUNT = 4001
 """Number of positions at which peaks are searched."""
 
 PEAK_SHORTFALL = 1e-5
-"""Share by which a peak may exceed the greatest sample."""
+"""Maximum relative excess of a peak over the largest sample."""
 
 REPORTED_ANGLE_TOLERANCE = 1e-6
 """Degrees by which a reported transmission angle may differ from that of the driven drag link."""
@@ -95,7 +94,7 @@ def _measure_station_error(design: IndexingDesign, drive: DrivenIndex) -> float:
 
 
 def _measure_difference(reported: list[float], found: Real) -> float:
-    """Return the greatest difference as a share of the greatest value; 0 if all are 0."""
+    """Return the maximum difference as a share of the maximum value; 0 if all are 0."""
     size = max(float(np.abs(found).max()), float(np.abs(reported).max()))
     return float(np.abs(np.array(reported) - found).max()) / size if size > 0.0 else 0.0
 
@@ -137,7 +136,7 @@ def _check_energy(
 
 
 def _check_peaks(design: IndexingDesign, found: DrivenIndex) -> list[Check]:
-    """Check that no sample exceeds a peak, and that the greatest is nearly as high."""
+    """Check that no sample exceeds a reported peak, and that the largest sample is nearly as high."""
     metrics = design.metrics
     beside = [
         (metrics.peak_velocity, found.motion.v),
@@ -151,7 +150,7 @@ def _check_peaks(design: IndexingDesign, found: DrivenIndex) -> list[Check]:
     for peak, values in beside:
         most = float(np.abs(values).max())
         if peak > 0.0:
-            # Both directions share one number: above by rounding, below by the sampling.
+            # One number covers both directions: above the peak by rounding, below it by the sampling.
             above = (most - peak) / peak
             worst = max(worst, above / ROUTE_TOLERANCE, -above / PEAK_SHORTFALL)
     return [check_maximum("peaks", worst, 1.0)]
@@ -234,7 +233,7 @@ def _check_constraints(
 
 
 def _measure_transmission_angle(design: IndexingDesign) -> float:
-    """Measure the drag link's least transmission angle, degrees: with the input aligned with the ground."""
+    """Measure the drag link's minimum transmission angle, degrees: with the input aligned with the ground."""
     assert isinstance(design.mechanism, GenevaMechanism)
     link = design.mechanism.drag_link
     assert link is not None

@@ -9,7 +9,8 @@ because crank and link are collinear at both ends. So O6 is free in the plane; N
 places it on the chord, with a time ratio of 1. The stage's shape, in units of r, depends on O6 alone: shapes are ranked
 by the minimum transmission angle, which occurs when the crank lies on the line O O6, and by their size. The direction
 of C on the link and the radius r only rotate and scale the stage: they are chosen to make the whole small, or to place
-O6 in the given region. If no ground link can be driven in this way, the coupler is (:mod:`coupler_driver`).
+O6 in the given region. If no ground link can be driven in this way, the coupler is driven instead
+(:mod:`synthesis.kinds.motion.driver.coupler_driver`).
 """
 
 from __future__ import annotations

@@ -53,8 +53,8 @@ RESAMPLING_COUNT = 3
 """Number of passes that redistribute the samples; each pass knows the arc length between them better."""
 
 UNIT_CIRCLE_TOLERANCE = 1e-6
-"""Distance from the unit circle up to which a zero of Δ counts as real; a false one only splits a loop where it is
-thin."""
+"""Distance from the unit circle up to which a zero of Δ counts as real. A spurious zero only splits a loop at a thin
+part."""
 
 RULING_TOLERANCE = 1e-7
 """Norm of the quadratic form on a line of the ruling, relative to the largest on the curve, below which the whole line

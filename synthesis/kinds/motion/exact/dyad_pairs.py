@@ -37,13 +37,14 @@ SINGLE_CLOUD_SIZE = 40_000
 """Number of dyads of an open side if the other is determined."""
 
 PAIRED_CURVE_SIZE, SINGLE_CURVE_SIZE = 1600, 8000
-"""The same two numbers for Burmester's curve, which has only one dimension to fill but extends far."""
+"""Number of dyads on Burmester's curve if both sides are open, and if only one is. The curve has only one dimension to
+fill but extends far."""
 
 SHORTLIST_SIZE = 4000
 """Number of best-scored pairs from which distinct ones are selected."""
 
 CLEARANCE_POOL_SIZE = 10_000
-"""Collision-test at most this many of the best pairs and the same number of the others."""
+"""Maximum number of the best pairs, and of the others, that are tested for collisions."""
 
 CLEARANCE_BATCH_SIZE, ENOUGH_CLEAR_PAIRS = 1000, 500
 """Batch size of the collision test, of the best pairs and of the others, and the number of clear pairs that ends it."""

@@ -84,7 +84,10 @@ VERDICTS = (
 
 
 class _ScreeningResult(NamedTuple):
-    """Verdicts (index into REJECTED) and scores of all pairs, shape (links, sliders); feasible pairs score above 0."""
+    """Verdicts (index into :data:`VERDICTS`) and scores of all pairs, shape (links, sliders).
+
+    Feasible pairs have positive scores.
+    """
 
     verdict: NDArray[np.int64]
     score: Real
@@ -305,8 +308,11 @@ def _screen(
 
 
 class _PairMotion(NamedTuple):
-    """Motions of all pairs: positions ahead along the slide at the targets, whether the input turns in one direction,
-    whether the pair stays clear of toggles, and the sine of the minimum transmission angle."""
+    """Motions of all pairs.
+
+    The fields are the positions ahead along the slide at the targets, whether the input turns in one direction, whether
+    the pair stays clear of toggles, and the sine of the minimum transmission angle.
+    """
 
     ahead: Real
     moved: NDArray[np.bool_]
@@ -383,8 +389,11 @@ def _compute_sine(height: Real, rod: Real) -> Real:
 def _screen_driving_slider(
     pins: Complex, pivots: Complex, others: Complex, line: Complex, rod: Real
 ) -> tuple[Real, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return the minimum sine of the angle between crank and coupler, whether the slider moves in one direction, and
-    whether its motion is free of dead centres."""
+    """Screen pairs that are driven by the slider.
+
+    Returns the minimum sine of the angle between crank and coupler, whether the slider moves in one direction, and
+    whether its motion is free of dead centres.
+    """
     places = ((others - others[..., :1]) * np.conj(line)).real
     steps = np.diff(places)
     moved = np.all(steps > 0.0, axis=-1) | np.all(steps < 0.0, axis=-1)

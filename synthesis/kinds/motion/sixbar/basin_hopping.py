@@ -104,8 +104,9 @@ class ConvergedSixbars(NamedTuple):
     Attributes
     ----------
     joints, makes, values, starts
-        Joints in the first position, topology numbers, values (:func:`quality.evaluate_sixbar`) and indices of the
-        first poses: shapes (most, 7), (most,), (most,), (most,).
+        Joints in the first position, topology numbers, values
+        (:func:`~synthesis.kinds.motion.sixbar.quality.evaluate_sixbar`) and indices of the first poses: shapes
+        (most, 7), (most,), (most,), (most,).
     counts : int, shape (3,)
         Number of linkages; of descents; of steps in descents.
     """
@@ -360,8 +361,8 @@ def _optimize_value(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _insert_in_pool(pool: Pool, n: int, x: Real, cost: float, setting: Real, start: int) -> None:
-    # Insertion sort from the end: the pool is small and nearly sorted.
     """Replace the n-th linkage of the pool and move the new one up to its rank by cost."""
+    # Insertion sort from the end: the pool is small and nearly sorted.
     while n > 0 and pool.costs[n - 1] > cost:
         copy_row(pool.x[n - 1], pool.x[n])
         copy_row(pool.settings[n - 1], pool.settings[n])

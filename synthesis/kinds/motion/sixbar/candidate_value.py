@@ -205,11 +205,11 @@ def _drive_to_last(
     flattest : float
         Minimum sine of a transmission angle, at most the given one.
     beyond : float
-        Sum of what closures lack.
+        Sum of the gaps of dyads that do not close.
     travelled, turned : float
         Path of P and rotation of the body.
     outside : float
-        Greatest distance of a joint from its box.
+        Maximum distance of a joint from its box.
     """
     beyond = 0.0
     travelled = turned = outside = 0.0
@@ -281,7 +281,7 @@ def _measure_other_assembly(
 
 @njit(**JIT_OPTIONS)
 def _measure_outside_boxes(joints: Complex, c2: int, outside: float, limits: Real) -> float:
-    """Return the greatest distance of a joint from its box in the first position, at least the given one."""
+    """Return the maximum distance of a joint from its box in the first position, at least the given one."""
     for joint in range(7):
         fixed = joint in (O2, O4) or (joint == Q2 and c2 == GROUND)
         outside = max(

@@ -1,7 +1,8 @@
-"""Sixbars from 3R chains with two constraining cranks (:mod:`chain_kernels`): sample chains and improve the best.
+"""Sixbars from 3R chains with two constraining cranks: sample chains and improve the best.
 
-All sixbars of each sampled chain are evaluated, and the best chains are improved by random steps. Two to four positions
-are completed to five by sampled poses between them.
+All sixbars of each sampled chain are evaluated, and the best chains are improved by random steps
+(:mod:`synthesis.kinds.motion.sixbar.chain_kernels`). Two to four positions are completed to five by sampled poses
+between them.
 """
 
 from __future__ import annotations

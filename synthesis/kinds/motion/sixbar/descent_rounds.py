@@ -1,4 +1,7 @@
-"""Sixbars from descents that stay on their branch (:mod:`basin_hopping`): rounds of descents for one problem."""
+"""Rounds of descents for one problem, which find sixbars and stay on their branch.
+
+The descents are those of :mod:`synthesis.kinds.motion.sixbar.basin_hopping`.
+"""
 
 from __future__ import annotations
 
@@ -167,7 +170,7 @@ def _find_cranks(task: MotionTask) -> NDArray[np.complex128]:
 def _sample_poses(
     problem: MotionProblem, task: MotionTask, target: TargetPoses, rng: np.random.Generator
 ) -> tuple[Real, Real]:
-    """Sample first poses and pack later poses in the form of :class:`quality.Poses`."""
+    """Sample first poses and pack later poses in the form of :class:`~synthesis.kinds.motion.sixbar.quality.Poses`."""
     unit = np.array([target.size, target.size, 1.0])
     first = (
         rng.uniform(-1.0, 1.0, (FIRST_POSE_COUNT, 3))
@@ -191,7 +194,7 @@ def _sample_poses(
 
 
 def _make_aims(problem: MotionProblem, limits: Real, aside: LimitMargins, *, relaxed: bool) -> Real:
-    """Pack the limits that descents aim at into a setting, from :data:`residuals.COSINE` on."""
+    """Pack the limits that descents aim at into a setting (:mod:`synthesis.kinds.motion.sixbar.residuals`)."""
     aims = np.zeros(rows.SETTING.size)
     angle = math.asin(limits[candidate_value.MIN_SINE]) + aside.angle
     reach, ratio = limits[[candidate_value.MAX_REACH, candidate_value.MAX_RATIO]]

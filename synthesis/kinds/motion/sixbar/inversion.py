@@ -69,8 +69,7 @@ def transform_rates(
     turning: Real,
     bending: Real,
 ) -> None:
-    """Transform rates to the ground frame, as :func:`transform_to_ground` transforms positions, and add that of the
-    cosine.
+    """Transform rates to the ground frame, and compute the rate of the cosine; see :func:`transform_to_ground`.
 
     Parameters
     ----------

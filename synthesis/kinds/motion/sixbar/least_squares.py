@@ -1,8 +1,9 @@
 """Least-squares fit of sixbars to more positions than they can meet, from the pool of branch-preserving descents.
 
 Eight positions determine a sixbar. If more are fitted, or if the constraints exclude exact solutions, the linkages with
-the lowest cost (:class:`basin_hopping.Pool`) are descended until their least squares converge, with the first pose
-among the unknowns. Exact positions have a larger weight there and are finally met by minimum-norm steps.
+the lowest cost (:class:`~synthesis.kinds.motion.sixbar.basin_hopping.Pool`) are descended until their least squares
+converge, with the first pose among the unknowns. Exact positions have a larger weight there and are finally met by
+minimum-norm steps.
 """
 
 from __future__ import annotations

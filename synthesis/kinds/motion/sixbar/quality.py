@@ -49,7 +49,8 @@ class Poses(NamedTuple):
     first : float, shape (n, 3)
         P and the body's angle in the first position; each linkage uses one row.
     later : float, shape (k, POSE.size)
-        Later positions in the form of :data:`residuals.POSE`, with angles from the first target position.
+        Later positions in the form of :data:`~synthesis.kinds.motion.sixbar.residuals.POSE`, with angles from the first
+        target position.
     needed : float, shape (2,)
         Path length and rotation that the body needs at least.
     limits : float

@@ -1,10 +1,10 @@
 """Residuals of a sixbar that carries a body through poses on one branch, in order.
 
-The unknowns x are the seven joints in the first position (:data:`dyad_assembly.O2` …) and, from each position to the
-next, the logarithm of the input's rotation, so that the input never reverses. Three optional unknowns are the body's
-first pose, which is then fitted like the later ones. The linkage is driven by closing its dyads, each in its initial
-assembly. A linkage that does not close at one of :data:`SAMPLE_COUNT` inputs in between is rejected, so a descent never
-leaves the branch. The residuals, each 0 if satisfied, are:
+The unknowns x are the seven joints in the first position (:mod:`synthesis.kinds.motion.sixbar.dyad_assembly`) and, from
+each position to the next, the logarithm of the input's rotation, so that the input never reverses. Three optional
+unknowns are the body's first pose, which is then fitted like the later ones. The linkage is driven by closing its
+dyads, each in its initial assembly. A linkage that does not close at one of :data:`SAMPLE_COUNT` inputs in between is
+rejected, so a descent never leaves the branch. The residuals, each 0 if satisfied, are:
 
 * P's distance and the body's angle from each later position, or their excess over the tolerance;
 * the excess of |cos μ| over that of the minimum transmission angle, for both dyads, or for the triad, at the samples;
@@ -268,10 +268,10 @@ def _compute_rates(
     through: Real,
     bending: Real,
 ) -> None:
-    """Write the derivatives by each of the 15 rows of :data:`UNIT_RATES`: of ``at`` (6, 15) and of both cosines (2,
-    15).
+    """Write the derivatives by each of the 15 rows of :data:`UNIT_RATES`.
 
-    ``turning`` and ``through`` (15,) are those of the body's and the coupler's angle.
+    ``moving`` (6, 15) receives those of ``at``, ``bending`` (2, 15) those of both cosines, ``turning`` and ``through``
+    (15,) those of the angles of the body and of the coupler.
     """
     make = int(setting[TOPOLOGY])
     first, second = TOPOLOGY_LINKS[make, 0], TOPOLOGY_LINKS[make, 1]
@@ -548,7 +548,7 @@ def evaluate_residuals(x: Real, points: Real, setting: Real, residuals: Real, ja
     m, angle, inverted = 0, 0.0, int(setting[TOPOLOGY]) == STEPHENSON_2
     if free > 0:
         m = _append_first_pose_rows(points[0], setting, stands, free, residuals, jacobian)
-    # First SAMPLES evenly spaced inputs between the end positions, then the later positions themselves.
+    # First SAMPLE_COUNT evenly spaced inputs between the end positions, then the later positions themselves.
     for n in range(SAMPLE_COUNT + intervals):
         target = n - SAMPLE_COUNT
         # Samples in equal shares of the whole rotation; targets at the end of each interval.

@@ -1,11 +1,11 @@
 """Motion generation by sixbars: descents that stay on their branch, and constrained chains if a chain is given.
 
-Descents from random linkages (:mod:`descent_rounds`) find sixbars for almost all problems, including many that random
-chains (:mod:`chain_rounds`) do not solve in hours. Chains are sampled if one is given; they alternate with descents if
-a Grashof class, a full rotation, a region or a box is required, which a descent ignores or reaches with difficulty.
-Chains support at most five positions. If positions are fitted without tolerances, the candidates with the smallest
-errors are fitted by least squares until convergence (:mod:`least_squares`). All returned designs are driven and
-verified like any linkage.
+Descents from random linkages (:mod:`~synthesis.kinds.motion.sixbar.descent_rounds`) find sixbars for almost all
+problems, including many that random chains (:mod:`~synthesis.kinds.motion.sixbar.chain_rounds`) do not solve in hours.
+Chains are sampled if one is given. They alternate with descents if a Grashof class, a full rotation, a region or a box
+is required, which a descent ignores or reaches with difficulty. Chains support at most five positions. If positions are
+fitted without tolerances, the candidates with the smallest errors are fitted by least squares until convergence
+(:mod:`~synthesis.kinds.motion.sixbar.least_squares`). All returned designs are driven and verified like any linkage.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ ATTEMPTS_PER_DESIGN, MIN_ATTEMPTS = 4, 20
 """Maximum number of verified sixbars: per requested design, and its lower bound."""
 
 WORKSPACE_ATTEMPTS = 150
-"""The same lower bound if obstacles, planes or forces matter, which the search ignores."""
+"""Minimum number of verified sixbars if obstacles, planes or forces matter, which the search ignores."""
 
 GRASHOF_CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
 """Grashof classes in the kernel's numbering."""
@@ -138,8 +138,7 @@ class SixbarSearch:
             # One feasible sixbar shows how hard the problem is: bound the rest of the search by that effort.
             if sound_ones and until == 1.0:
                 until = min(1.0, (1.0 + EXTENSION_FACTOR) * spent + EXTENSION_SHARE)
-            # Enough distinct feasible sixbars after at least two rounds, so that a lucky first one is not the only
-            # source.
+            # At least two rounds are made, so that not all sixbars come from one lucky round.
             if n >= MIN_ROUNDS and sound_ones >= self.problem.max_designs:
                 break
             progress(min(spent, 1.0), f"{self.candidate_count} sixbars examined")
@@ -223,7 +222,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
 
 
 def _pack_limits(problem: MotionProblem, task: MotionTask) -> Real:
-    """Pack the limits of a problem for the kernel (:data:`candidate_value.LIMITS`)."""
+    """Pack the limits of a problem for the kernel, as :data:`~synthesis.kinds.motion.sixbar.candidate_value.LIMITS`."""
     constraints = problem.constraints
     angle = (
         SOUND_TRANSMISSION_ANGLE

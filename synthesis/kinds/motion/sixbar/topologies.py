@@ -74,7 +74,8 @@ TOPOLOGIES = (
          "link_5": ("C", "D"), "output": ("O4", "E")},
     ),
 )  # fmt: skip
-"""Topologies in the order of their kernel numbers (:data:`dyad_assembly.TOPOLOGY_LINKS`)."""
+"""Topologies in the order of their kernel numbers
+(:data:`~synthesis.kinds.motion.sixbar.dyad_assembly.TOPOLOGY_LINKS`)."""
 
 
 class SixbarCandidates(NamedTuple):

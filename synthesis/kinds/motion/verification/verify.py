@@ -29,8 +29,8 @@ def verify(
         The problem.
     mechanism : LinkageMechanism
         Only the dimensions are used; the skeleton is used if it defines the dimensions, as for sixbars.
-    target : Demanded, optional
-        Target poses ``demanded(problem)``, from a caller that verifies many mechanisms.
+    target : TargetPoses, optional
+        Target poses of the problem, from a caller that verifies many mechanisms.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Fits of a whole curve: their errors, their cognates as fits of the same curve, and fits under constraints.
 
-Constraints guide the search from the start. A fit that violates one is led to satisfy it by multipliers, from several
-starting points:
+Constraints guide the search from the start. A fit that violates a constraint is refitted with multipliers that enforce
+it, from several starting points:
 
 * from every free fit and its cognates, which draw the same curve with other pivots, links and transmission angles:
   if one of them satisfies all constraints, these cost nothing;
@@ -43,22 +43,22 @@ FIT_DUPLICATE_TOLERANCE = 1e-4
 """Fits whose joints agree to this share of the curve's size are duplicates."""
 
 MAX_CONSTRAINED = 20
-"""Maximum number of fits and cognates that are led to satisfy the constraints: those with the least error and
+"""Maximum number of fits and cognates that are refitted under the constraints: those with the smallest error and
 violation."""
 
 FREE_ERROR_RATIO, MAX_CONSTRAINED_IF_FEASIBLE = 1.001, 7
-"""If the nearest feasible fit is within the first factor of the nearest free one, only the second number of others is
-led to satisfy the constraints, to offer a choice."""
+"""If the error of the nearest feasible fit is within the first factor of that of the nearest free fit, only the second
+number of other fits is refitted under the constraints, to offer a choice."""
 
 MAX_SOFT, MAX_SOFT_STEPS = 12, 30
-"""Maximum number of ends of soft descents from the shape library that are led to satisfy all constraints, and the
+"""Maximum number of results of soft descents from the shape library that are refitted under all constraints, and the
 number of steps of these descents."""
 
 ANGLE_SHARES = (0.34, 0.67)
-"""Shares of a required transmission angle at which fits stop on their way to it."""
+"""Shares of a required transmission angle that are enforced first, if the angle is raised in steps."""
 
 MAX_CLIMBING = 6
-"""Maximum number of free fits, the nearest, that climb the ladder."""
+"""Maximum number of free fits, the nearest ones, for which a required transmission angle is raised in steps."""
 
 
 Joint = TypeVar("Joint", complex, Complex)
@@ -66,8 +66,11 @@ Joint = TypeVar("Joint", complex, Complex)
 
 
 class Fit(NamedTuple):
-    """A linkage fitted to a target: family, unknowns (m,), assembly, crank angles at all fitted points (radians), and
-    its error in the target's unit, excursions between the points included."""
+    """A linkage fitted to a target.
+
+    It consists of the family, the unknowns (m,), the assembly, the crank angles at all fitted points (radians), and the
+    error in the target's unit, which includes excursions between the points.
+    """
 
     family: int
     x: Real
@@ -77,7 +80,7 @@ class Fit(NamedTuple):
 
 
 def get_thinning(target: TargetCurve) -> slice:
-    """Return the slice of fitted points used first: all, unless they are many."""
+    """Return the slice of fitted points that is used first: all points, unless there are many."""
     return slice(None, None, math.ceil(len(target.fitted) / MAX_CONSTRAINED_POINTS))
 
 
@@ -108,8 +111,7 @@ def select_distinct_fits(fits: list[Fit], count: int) -> list[Fit]:
 
 
 def list_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
-    """Return a fourbar and its two cognates (Roberts), each with either fixed pivot as the input's, in one
-    configuration.
+    """Return a fourbar and its two cognates (Roberts) in one configuration, each driven from either fixed pivot.
 
     With ζ = (P − A)/(B − A) the third pivot is O2 + ζ (O4 − O2), and O2 A P A′ is a parallelogram (Norton, Sec. 3.7).
     """
@@ -186,7 +188,7 @@ def find_constrained_fits(
 
     Parameters
     ----------
-    target : Target
+    target : TargetCurve
         The curve to draw.
     free : list of Fit
         Fits without the constraints, the nearest first.
@@ -262,7 +264,7 @@ def solve_constrained_fit(
 
 
 def interpolate_all_angles(target: TargetCurve, theta: Real, part: slice | NDArray[np.int64]) -> Real:
-    """Interpolate crank angles at all fitted points from those at a part of them."""
+    """Interpolate crank angles at all fitted points from those at some of them."""
     every = np.arange(len(target.fitted))
     at = every[part]
     if len(at) == len(every):

@@ -1,4 +1,4 @@
-"""Place a matched curve: its free position, rotation and size are used to meet given pivots and lengths.
+"""Placement of a matched curve: free position, rotation and size are used to meet given pivots and lengths.
 
 A linkage can be moved, rotated and scaled together with its curve. If everything is free both fixed pivots can be
 given, because z → αz + β is known from two points. If the position is free one pivot can be given, or a region for
@@ -19,8 +19,7 @@ ROUNDING_MARGIN = 1e-9
 
 
 def relax_constraints(problem: PathProblem) -> PathProblem:
-    """Return the problem of the shape search: without the constraints that placing the curve will satisfy, or
-    change."""
+    """Return the problem of the shape search, without the constraints that the later placement satisfies or changes."""
     free = set(problem.placement_free)
     demands: dict[str, object] = {}
     limits: dict[str, object] = {}
@@ -36,8 +35,10 @@ def relax_constraints(problem: PathProblem) -> PathProblem:
 
 
 def find_placement(problem: PathProblem, joints: FourbarConfiguration) -> tuple[complex, complex]:
-    """Return α and β of z → αz + β that move a linkage and its curve to satisfy the constraints; 1 and 0 if nothing is
-    free."""
+    """Return α and β of the map z → αz + β that places a linkage and its curve to satisfy the constraints.
+
+    They are 1 and 0 if nothing is free.
+    """
     free = set(problem.placement_free)
     both = _get_both_pivots(problem)
     if both is not None:
@@ -133,7 +134,7 @@ def _find_scale(problem: PathProblem, joints: FourbarConfiguration) -> float:
 
 
 def _find_scale_range(coordinate: float, interval: tuple[float, float]) -> tuple[float, float]:
-    """Return the minimum and maximum factor that scale a coordinate into an interval; minimum > maximum if none does.
+    """Return the minimum and maximum factor that scale a coordinate into an interval; minimum > maximum for none.
 
     The interval is shrunk by :data:`ROUNDING_MARGIN`, so that rounded results lie inside.
     """

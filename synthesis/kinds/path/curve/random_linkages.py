@@ -20,7 +20,7 @@ MAX_CYCLE_TURNS = 60
 this."""
 
 RATIO_TOLERANCE = 1e-9
-"""A gear ratio counts as a fraction if it differs from it by less than this."""
+"""Maximum difference of a gear ratio from a fraction to which it counts as equal."""
 
 SWEEP_SHARE = 0.999
 """Share of the range between two toggles that is swept: at the toggles themselves the derivatives are unbounded."""
@@ -93,8 +93,10 @@ def _place_coupler_points(x: Real, u: Real, coupler: Real) -> None:
 
 
 def _compute_fourbar_range(lengths: Real) -> tuple[Real, Real]:
-    """Return the crank's range from the ground line (γ = 0): a full turn, or from toggle to toggle on the upper
-    side."""
+    """Return the crank's range, measured from the ground line (γ = 0).
+
+    It is a full turn, or the range from toggle to toggle on the upper side of the ground line.
+    """
     d, a, b, c = lengths.T
     most = (a * a + d * d - (b + c) ** 2) / (2.0 * a * d)
     least = (a * a + d * d - (b - c) ** 2) / (2.0 * a * d)

@@ -53,14 +53,14 @@ START_DUPLICATE_TOLERANCE = 0.12
 """Starts whose pivots agree to this share of the task's size lead to the same linkage; only the first is followed."""
 
 OVERSUPPLY_FACTOR = 6
-"""The most similar candidates are often nearly equal: this multiple of the requested number is searched for distinct
-ones."""
+"""Multiple of the requested number of candidates that is searched for distinct ones, because the most similar
+candidates are often nearly equal."""
 
 PLACE_OVERSUPPLY_FACTOR = 8
 """Further multiple that is searched if the place of the candidates matters too."""
 
 MAX_OVERSIZE_RATIO = 2.0
-"""Starts with links at most this many times too long are still followed: most shrink in the descent."""
+"""Maximum excess factor of the links of a start over the longest permitted link; most links shrink in the descent."""
 
 TURN_ROUNDING = 1e-12
 """Relative rounding of a range of crank angles that is a whole cycle."""
@@ -73,7 +73,7 @@ class Starts(NamedTuple):
     ----------
     family : int
     x, sign : float, shapes (n, m), (n,)
-    theta : float, shape (n, SHAPE_POINTS)
+    theta : float, shape (n, SHAPE_POINT_COUNT)
         Crank angles at the target's shape points, radians.
     unlike : float, shape (n,)
         Dissimilarity √(1 − ρ²).
@@ -114,11 +114,11 @@ def _resample(curves: Complex, closed: bool, shapes: Complex) -> None:
 def _match_windows(
     curves: Complex, ring: bool, lengths: Real, starts: int, target: Complex, best: Real, where: NDArray[np.int64]
 ) -> None:
-    """Find the window of each curve (equal steps) most similar to an open target, forward or backward, itself or
-    mirrored.
+    """Find the window of each curve that is most similar to an open target.
 
-    ``best`` receives ρ, ``where`` (n, 3) the indices of length and start, and the manner: 0 forward, 1 backward, +2
-    mirrored.
+    Curves are sampled at equal steps. Windows are compared forward and backward, and mirrored as well. ``best``
+    receives ρ. ``where`` (n, 3) receives the index of the length, the index of the start, and a code: 0 for forward, 1
+    for backward, plus 2 for mirrored.
     """
     n, count = curves.shape
     points = len(target)
@@ -170,8 +170,10 @@ def _match_windows(
 
 
 class Similarity(NamedTuple):
-    """Similarity of the candidates of a chunk: ρ, shape (n,), and the target's place on them, shape (n, 3): see
-    :func:`_match_windows`."""
+    """Similarity of the candidates of a chunk.
+
+    It consists of ρ, shape (n,), and the target's place on each candidate, shape (n, 3); see :func:`_match_windows`.
+    """
 
     rho: Real
     where: NDArray[np.int64]
@@ -246,7 +248,7 @@ def compare_shapes(
     ----------
     family : int
         A family of :mod:`synthesis.fit.chart`.
-    target : complex, shape (SHAPE_POINTS,)
+    target : complex, shape (SHAPE_POINT_COUNT,)
         Equal steps along the target.
     closed : bool
         Whether it is a closed curve; an open one is compared with windows of the candidates.
@@ -301,7 +303,7 @@ def select_most_similar(
 
     Parameters
     ----------
-    of : Compared
+    of : ComparedShapes
         The candidates.
     keep : int
         Maximum number returned.
@@ -357,8 +359,10 @@ def _place_rows(
     closed: bool,
     ratio: float,
 ) -> tuple[Real, Real, Real]:
-    """Move, rotate, scale and mirror candidates onto the target; return unknowns, crank angles at its points, and
-    signs."""
+    """Move, rotate, scale and mirror candidates onto the target.
+
+    Returns the unknowns, the crank angles at the target's points, and the assembly signs.
+    """
     curves, theta, _, rings = _sweep_rows(drawn, family, order, ratio)
     x, sign = drawn.x[order].copy(), drawn.sign[order].copy()
     at = np.empty((len(order), SHAPE_POINT_COUNT))
@@ -498,15 +502,17 @@ def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> 
 
 
 def _select_distinct(x: Real, theta: Real, size: float, longest: float, family: int, keep: int) -> NDArray[np.int64]:
-    """Return at most ``keep`` rows that are not near one another, nor far too large."""
+    """Return at most ``keep`` rows of distinct linkages that are not far too large."""
     rows, marks = _mark_rows(x, theta, longest, family)
     return np.asarray(rows[select_distinct(marks, keep, START_DUPLICATE_TOLERANCE * size)])
 
 
 @njit(cache=True, nogil=True)
 def _mark_rows(x: Real, theta: Real, longest: float, family: int) -> tuple[NDArray[np.int64], Real]:
-    """Return the rows that are not far too large, and coordinates that distinguish them: O2, A and the other
-    lengths."""
+    """Return the rows of linkages that are not far too large, and coordinates that distinguish them.
+
+    The coordinates are O2, A and the other lengths.
+    """
     lengths, chart = np.empty(4), np.empty((4, 4))
     rows, marks, count = np.empty(len(x), np.int64), np.empty((len(x), 8)), 0
     shift = 0 if family == GEARED_FIVEBAR else 1

@@ -2,14 +2,15 @@
 
 1. *Shape.* Some ten thousand linkages are drawn, and their curves compared with the target with position, size and
    rotation removed (:mod:`synthesis.kinds.path.curve.shape_matching`).
-2. *Refinement.* The most similar ones, placed on the target, go to least squares of the true distance
+2. *Refinement.* The most similar ones are placed on the target and refined by least squares of the true distance
    (:mod:`synthesis.kinds.path.residuals.curve_descent`), first at equal steps along the target, then at its own points.
 3. *Limits.* If a constraint is violated the descent is repeated under it
   (:mod:`synthesis.kinds.path.residuals.curve_constraints`).
 4. Every linkage is offered with its cognates, which draw the same curve, from either fixed pivot, and verified.
 
-If fixed pivots are given the shape alone says little, because size and place are not free: linkages are then fitted to
-points along the target, from many starts (:mod:`synthesis.kinds.path.points.fit`), and verified like the others.
+If fixed pivots are given, the shape alone is not sufficient, because size and place are not free. Linkages are then
+fitted to points along the target from many starts (:mod:`synthesis.kinds.path.points.fit`), and verified like the
+others.
 
 A closed curve must be drawn by a crank that turns through; the families of linkages are parametrized so that it does. A
 stroke may be drawn by any link, between its toggles.
@@ -92,14 +93,14 @@ DRAW_COUNTS = {
     (DOUBLE_CRANK, False): 4096,
     (FOURBAR, False): 8192,
 }
-"""Number of linkages drawn, by family and whether the target is closed; an open one is compared with 216 windows of
-each."""
+"""Number of linkages drawn, by family and whether the target is closed. An open target is compared with 216 windows of
+each curve."""
 
 MAX_FOLLOWED = 150
 """Maximum number of starts of a family that are refined at equal steps along the target."""
 
 MAX_REFINED = 20
-"""Maximum number of these, the best, that are refined at the target's own points."""
+"""Maximum number of the best of these linkages that are refined at the target's own points."""
 
 MAX_ROUGH_STEPS, MAX_FINE_STEPS = 30, 300
 """Maximum number of steps of these two refinements."""
@@ -108,19 +109,18 @@ MAX_FULL_STEPS = 60
 """Maximum number of steps with all points, after a refinement with thinned ones."""
 
 MAX_COST_RATIO, MIN_SHAPE_ERROR = 100.0, 1e-3
-"""Linkages whose sum of squares at equal steps exceeds the minimum by this factor are dropped. Below the second number,
-a share of the size at every point, the sum is not decisive, because the steps lie on straight lines between the points.
-"""
+"""Maximum ratio of a linkage's sum of squares at equal steps to the minimum, and the error at each point, as a share of
+the size, below which the sum is not decisive, because the steps lie on straight lines between the points."""
 
 MAX_FREE = 14
-"""Maximum number of distinct refined linkages of a family that go on."""
+"""Maximum number of distinct refined linkages of a family that are processed further."""
 
 MAX_SUITABLE = 60
 """Maximum number of linkages of a family that satisfy the constraints on shape and start constrained fits."""
 
 USABLE_ANGLES, MAX_USABLE = (20.0, 30.0, 40.0), 3
-"""Transmission angles, degrees, for which designs are offered next to the nearest one if none is required, and the
-maximum number with each: free fits tend to change points, where the transmission angle vanishes."""
+"""Transmission angles, degrees, for which designs are offered in addition to the nearest one if none is required, and
+the maximum number of designs for each. Free fits tend to change points, where the transmission angle vanishes."""
 
 MAX_OFFERED = 10
 """Maximum number of linkages, each with its cognates, that are verified."""
@@ -159,8 +159,10 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def fit_by_shape(problem: PathProblem, progress: Progress) -> list[FourbarConfiguration]:
-    """Return linkages whose whole curves are near the course of a problem's points, cognates included; not yet
-    driven."""
+    """Return linkages, with their cognates, whose whole curves are near the course of a problem's points.
+
+    They are not yet driven.
+    """
     target = TargetCurve(problem)
     setting = pack_curve_setting(problem, target.centre, target.size)
     linkages, _ = _find_linkages(problem, target, setting, progress)
@@ -170,7 +172,7 @@ def fit_by_shape(problem: PathProblem, progress: Progress) -> list[FourbarConfig
 def fit_stance_from_points(
     problem: PathProblem, candidates: Sequence[Candidate], task: PointTask
 ) -> list[FourbarConfiguration]:
-    """Lead fits of a problem's points to its stance; return them in the problem's coordinates, not yet driven."""
+    """Refit fits of a problem's points under its stance; return them in the problem's coordinates, not yet driven."""
     target = TargetCurve(problem)
     if len(target.points) < len(problem.points):
         return []  # the last point repeats the first, and fits of a whole curve merge the two
@@ -306,8 +308,7 @@ def warm_up() -> None:
 
 
 def _refine_free(target: TargetCurve, starts: Starts, longest: float, least: float) -> tuple[list[Fit], float]:
-    """Refine the starts by least squares without constraints; return the fits, nearest first, and the minimum cost so
-    far.
+    """Refine starts by least squares without constraints; return the fits, nearest first, and the minimum cost.
 
     ``least`` is the minimum cost at equal steps of earlier families; links longer than ``longest`` are penalized.
     """
@@ -347,7 +348,7 @@ def _refine_free(target: TargetCurve, starts: Starts, longest: float, least: flo
 def _continue_with_all_points(
     target: TargetCurve, family: int, thinned: Descent, sign: Real, thin: slice, longest: float, rows: list[int]
 ) -> Descent:
-    """Continue descents from a part of the points with all of them."""
+    """Continue descents that used thinned points with all points."""
     x, cost = thinned.x.copy(), thinned.cost.copy()
     theta = np.empty((len(x), len(target.fitted)))
     for k in rows:

@@ -1,8 +1,8 @@
-"""Lead fits to their required stance under all other constraints.
+"""Fits with a required stance and all other constraints, by the method of multipliers.
 
-Similar shapes say nothing about how evenly a point moves, so that many fits are tried, the nearest and others: the rows
-are those of :mod:`synthesis.kinds.path.residuals.stance`, the method is that of multipliers. The stance is constrained
-a little more tightly than required at a finite number of places, because it may be wider between them.
+Similarity of shapes does not show how evenly a point moves, so that many fits are tried, not only the nearest. The rows
+are those of :mod:`synthesis.kinds.path.residuals.stance`. The stance is constrained a little more tightly than required
+at a finite number of places, because it may be wider between them.
 """
 
 from __future__ import annotations
@@ -67,14 +67,14 @@ MAX_ROUNDS, MAX_STEPS, INITIAL_WEIGHT = 8, 80, 30.0
 """Maximum number of descents with multipliers, of steps of each, and the initial weight."""
 
 MAX_VIOLATION = 1e-3
-"""Maximum violation of a constraint at the end, in its own unit: the driven linkage is verified anyway."""
+"""Maximum violation of a constraint at the end, in its own unit; the driven linkage is verified later."""
 
 MAX_CONSTRAINED, MAX_KEPT = 60, 12
-"""Maximum number of fits that are led to the stance, and of successful ones, the nearest, that are driven."""
+"""Maximum number of fits that are refitted under the stance, and of the nearest successful ones that are driven."""
 
 
 def convert_to_fit(candidate: Candidate, task: PointTask, target: TargetCurve) -> Fit:
-    """Convert a fit to a target's own points into one to all fitted points of it, in its unit; with its error."""
+    """Convert a fit to a target's own points into a fit to all its fitted points, in its unit, with its error."""
     family, sign, n = int(candidate.setting[FAMILY_INDEX]), float(candidate.setting[SIGN_INDEX]), len(target.points)
     scale = task.size / target.size
     x = candidate.x[: UNKNOWNS[FOURBAR]].copy()
@@ -103,9 +103,9 @@ class StanceFit(NamedTuple):
 
 
 def pack_stance(problem: PathProblem, size: float, first: int, last: int, cycle: float) -> Real:
-    """Pack a stance for the rows, in a unit of ``size`` length units, from the row ``first`` to the row ``last``.
+    """Pack a stance from the row ``first`` to the row ``last`` for the residuals, in a unit of ``size`` length units.
 
-    ``cycle`` is the input's, radians: the stance uses it if it continues past the last row.
+    ``cycle`` is the input's cycle, radians, which is needed if the stance continues past the last row.
     """
     stance = problem.stance
     assert stance is not None
@@ -121,17 +121,17 @@ def pack_stance(problem: PathProblem, size: float, first: int, last: int, cycle:
 
 
 def pack_no_stance(points: int) -> Real:
-    """Return the same for a problem without a stance."""
+    """Return the packed stance of a problem without a stance, which constrains nothing."""
     out = np.full(STANCE_SIZE, math.inf)
     out[FIRST], out[LAST], out[CYCLE], out[COSINE], out[SINE] = 0, points - 1, 0.0, 1.0, 0.0
     return out
 
 
 def pack_target_stance(problem: PathProblem, target: TargetCurve, fitted: int) -> tuple[Integers, Real]:
-    """Return the points to fit among a target's first ``fitted`` ones, and the stance by their rows, in the target's
-    unit.
+    """Return the indices of the points to fit among a target's first ``fitted`` ones, and the packed stance.
 
-    The first and last point of the stance are always among them.
+    The stance is in the target's unit and refers to the rows of these points. Its first and last point are always among
+    them.
     """
     assert problem.stance is not None
     # The last point of a closed curve may repeat its first; a target drops it, so that its index wraps around.
@@ -144,13 +144,13 @@ def pack_target_stance(problem: PathProblem, target: TargetCurve, fitted: int) -
 def find_stance_fits(
     problem: PathProblem, target: TargetCurve, fits: Sequence[Fit], families: list[int], setting: Real
 ) -> list[Fit]:
-    """Lead fourbars near a target, and their cognates, to the stance; distinct ones, nearest first.
+    """Refit fourbars near a target, and their cognates, under the stance; return distinct ones, nearest first.
 
     Parameters
     ----------
     problem : PathProblem
         With a stance.
-    target : Target
+    target : TargetCurve
         The curve to draw.
     fits : sequence of Fit
         Starts.
@@ -206,7 +206,7 @@ def fit_simple_stance(
     linkage_limits: LinkageLimits,
     cosine: float,
 ) -> StanceFit | None:
-    """Lead a slider-crank or geared fivebar to the stance; None if that fails.
+    """Refit a slider-crank or geared fivebar under the stance; return None if that fails.
 
     Parameters
     ----------
@@ -237,8 +237,10 @@ def fit_simple_stance(
 def _fit_constrained(
     rows: Any, x: Real, points: Complex, weights: Real, setting: Real, state: Real, limits: int, equations: int
 ) -> float | None:
-    """Enforce all constraints in place; return half the sum of squares, or None if a violation exceeds
-    :data:`MAX_VIOLATION`."""
+    """Enforce all constraints, changing the unknowns in place.
+
+    Returns half the sum of squares, or None if a violation exceeds :data:`MAX_VIOLATION`.
+    """
     placed = np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1)
     ended = np.empty(1)
     most = 2 * len(points) + limits

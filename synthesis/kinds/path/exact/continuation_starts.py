@@ -15,7 +15,7 @@ from kinematics.arrays import Complex
 
 
 class StoredStart(NamedTuple):
-    """Solutions, shape (solutions, unknowns), for the parameters, shape (parameters,)."""
+    """A stored start: solutions, shape (solutions, unknowns), for parameters of shape (parameters,)."""
 
     y: Complex
     p: Complex

@@ -37,8 +37,7 @@ from synthesis.model.linkage.conversion import FourbarConfiguration
 POINT_COUNT = 5
 
 DYAD_TOLERANCE = 1e-6
-"""An output link whose pivots are this near (task sizes, and shares of its own reach) to the input link's is that
-link."""
+"""Distance of pivots, in task sizes and in shares of its own reach, below which an output link is the input link."""
 
 
 class TimedFourbars(NamedTuple):
@@ -55,13 +54,12 @@ class TimedFourbars(NamedTuple):
 
 
 def compute_timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
-    """Compute all fourbars whose coupler point is at each of five points when the crank has turned by each of five
-    angles.
+    """Compute all fourbars whose coupler point is at five points at the corresponding five crank rotations.
 
     Parameters
     ----------
     points : complex, shape (5,)
-        In task coordinates: the first is 0, the greatest distance is 1.
+        In task coordinates: the first is 0, the maximum distance is 1.
     turns : float, shape (5,)
         Rotations of the crank from the first point, radians; the first is 0.
     """

@@ -1,9 +1,9 @@
 """Fourbars through three to eight points in a workspace: members of the family that have their pivots in their zones.
 
 Linkages are drawn in the zones, and those nearest to the points are fitted to them, with the zones as penalties. The
-best are then led to satisfy all constraints; the motion through the workspace is constrained only if it does not fit by
-itself. If no candidate satisfies everything, fits of points (:mod:`synthesis.kinds.path.points.fit`), which perturb the
-nearest ones, are searched for some that miss nothing.
+best are then refitted under all constraints. The motion through the workspace is constrained only if a linkage leaves
+the workspace otherwise. If no candidate satisfies all constraints, exact members are searched among fits to the points
+(:mod:`synthesis.kinds.path.points.fit`), which perturb the nearest linkages.
 """
 
 from __future__ import annotations
@@ -37,8 +37,9 @@ MAX_FOLLOWED, MAX_STEPS = 400, 80
 fit."""
 
 MAX_CONSTRAINED, MAX_MOVED, BATCH_SIZE = 64, 16, 8
-"""Maximum numbers: of these, the best, that are led to satisfy all constraints except the workspace along the motion;
-of the results, those with the smallest workspace violation, that are moved into it; and how many of these at a time."""
+"""Maximum number of the best fitted linkages that are refitted under all constraints except the workspace along the
+motion; maximum number of the results, those with the smallest workspace violation, that are moved into the workspace;
+and number that is moved at a time."""
 
 MAX_WORKSPACE_VIOLATION = 0.3
 """Workspace violation of a member, in task sizes, beyond which it is not moved."""
@@ -124,7 +125,7 @@ def _find_constrained_members(
 def _fit_members(
     family: int, fits: list[tuple[Real, Real, float]], points: Complex, setting: Real
 ) -> list[tuple[float, ConstrainedFit]]:
-    """Lead fits (unknowns, crank angles, assembly) to members of the family within a setting."""
+    """Refit linkages (unknowns, crank angles, assembly) to members of the family that satisfy a setting."""
     found: list[ConstrainedFit | None] = [None] * len(fits)
     weights = np.ones(len(points))
 

@@ -1,9 +1,9 @@
-"""Fourbars through three to eight points under constraints: a search of the continuous family that they leave.
+"""Fourbars through three to eight points under constraints: a search of the continuous family of solutions.
 
 Fourbars through fewer than nine points form a continuous family. Its members are sought near a smooth curve through the
 points: some ten thousand linkages of the required class are compared with that curve, as for whole curves. The most
-similar ones go to least squares at the points alone, with the distances from given pivots and regions as further
-residuals, until the cost is zero: each start leads to the nearest member of the family.
+similar ones are refined by least squares at the points alone, with the distances from given pivots and regions as
+further residuals, until the cost is zero. Each start leads to the nearest member of the family.
 
 Few of these members, or none, satisfy the other constraints (transmission angle, lengths, order, places of P and of the
 moving pivots). Therefore the members with the smallest violations are moved along the family: they descend again, with
@@ -49,7 +49,7 @@ DRAW_COUNT = 6144
 the points."""
 
 MAX_FOLLOWED = 220
-"""Maximum number of the most similar linkages that go to least squares."""
+"""Maximum number of the most similar linkages that are refined by least squares."""
 
 MAX_STEPS = 150
 """Maximum number of steps of least squares; most members are reached in some twenty."""
@@ -80,7 +80,7 @@ PORTION_SIZE = 2
 
 
 class Member(NamedTuple):
-    """A linkage through all points, in the problem's coordinates, and its largest constraint violation: 0 for none."""
+    """A linkage through all points, in the problem's coordinates, and its maximum constraint violation; 0 for none."""
 
     joints: FourbarConfiguration
     broken: float

@@ -29,8 +29,8 @@ UNKNOWN_COUNT, PARAMETER_COUNT, SCRATCH_SIZE = 8, 12, 72
 workspace."""
 
 MIN_SCALE = 1e-300
-"""Added to the size of s, which scales a column: a coupler that does not turn leaves the column zero instead of
-dividing by zero."""
+"""Number added to the size of s, which scales a column, so that a coupler that does not turn causes no division by
+zero."""
 
 SCALE_GROUPS = np.array([0, 0, 0, 0, 1, 1, 1, 1], np.int64)
 """Scale group of each unknown: the vectors share a scale, and the rotations share another."""
@@ -80,8 +80,10 @@ def compute_residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
 
 
 def compute_conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Return the condition of the Jacobian at each solution, rows and columns scaled to their size: shape
-    (solutions,)."""
+    """Return the condition number of the Jacobian at each solution, shape (solutions,).
+
+    Rows and columns are scaled to their size.
+    """
     jacobian = np.zeros((len(y), UNKNOWN_COUNT, UNKNOWN_COUNT), np.complex128)
     s = y[:, 4:]
     back = 1.0 / (1.0 + s)

@@ -1,8 +1,8 @@
 """All fourbars on two given fixed pivots whose coupler point goes through five points.
 
 The 36 solutions of general complex parameters are followed to the points and pivots of the problem
-(:mod:`synthesis.kinds.path.exact.five_point_system`). If 36 different ones arrive, with the complex conjugate of each
-and none nearly singular, there are no others. Cognates stand on other pivots and are no answers here.
+(:mod:`synthesis.kinds.path.exact.five_point_system`). If 36 distinct solutions arrive, with the complex conjugate of
+each and none nearly singular, there are no others. Cognates have other fixed pivots and are not solutions here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BEND_SIZE = 2.0
 """Size of the random bend of the parameters' path, in sizes of the problem."""
 
 FIRST_STEP_TOLERANCE, LATER_STEP_TOLERANCE = 5e-3, 1e-3
-"""Relative error of the prediction that a step may have: in the first run, and in later ones, after a path was lost."""
+"""Maximum relative prediction error of a step: in the first run, and in later runs, after a path was lost."""
 
 MAX_RUNS = 4
 """Maximum number of runs, each along another path of the parameters, until all solutions have arrived."""
@@ -41,7 +41,8 @@ DUPLICATE_TOLERANCE, REAL_TOLERANCE = 1e-6, 1e-6
 conjugate)."""
 
 MAX_CONDITION = 1e9
-"""Condition above which the last digits of the points decide how many solutions are real: some may be missed."""
+"""Condition number above which the last digits of the points decide how many solutions are real, so that some may be
+missed."""
 
 
 class FivePointSolutions(NamedTuple):
@@ -54,9 +55,9 @@ class FivePointSolutions(NamedTuple):
     linkages : list of FourbarConfiguration
         The real ones, in the first position.
     complete : bool
-        Whether all are known.
+        Whether all solutions are known.
     largest_residual : float
-        Over all solutions.
+        Maximum residual of all solutions.
     """
 
     found: int
@@ -75,7 +76,7 @@ def solve_five_points(points: Complex, o2: complex, o4: complex, rng: np.random.
     o2, o4 : complex
         The fixed pivots, distinct.
     rng : Generator
-        Draws the ways along which the parameters move.
+        Source of the random parameter paths.
     """
     moved = np.asarray(points[1:] - points[0], np.complex128)
     pivots = np.array([o2, o4]) - points[0]

@@ -1,4 +1,4 @@
-"""Path generation on two given fixed pivots: five points have finitely many fourbars, and all are found."""
+"""Path generation on two given fixed pivots: finitely many fourbars go through five points, and all are found."""
 
 from __future__ import annotations
 

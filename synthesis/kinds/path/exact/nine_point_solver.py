@@ -29,11 +29,11 @@ from synthesis.numerics.continuation import ParameterPath, follow, refine
 POINT_COUNT = 9
 
 THREAD_COUNT = 2
-"""Paths are followed two at a time: the kernels release the interpreter, and most machines have a second core."""
+"""Number of paths followed in parallel. The kernels release the interpreter lock, and most machines have a second
+core."""
 
 CURVE_OFFSET_RATIO = 0.03
-"""Distance of drawn points from the smooth curve, as a share of the points' mean distance, so that no two rounds are
-alike."""
+"""Distance of drawn points from the smooth curve, as a share of the points' mean distance; it makes rounds differ."""
 
 
 def solve_nine_points(problem: PathProblem, progress: Progress) -> PathResult:

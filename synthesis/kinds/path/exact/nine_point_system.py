@@ -44,7 +44,8 @@ NJIT_OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiler options of the kernels: vectors for the eight points, with fused multiplications and no exceptions."""
 
 LANE_COUNT = 8
-"""Numbers per quantity in the workspace, one for each point; imaginary parts follow LANES after the real ones."""
+"""Number of values per quantity in the workspace, one for each point. Imaginary parts follow ``LANE_COUNT`` places
+after the real parts."""
 
 PAIR_SIZE = 2 * LANE_COUNT
 
@@ -67,7 +68,8 @@ MATRIX = (29 * PAIR_SIZE + LANE_COUNT) // 2
 SCRATCH_SIZE = MATRIX + 80
 
 MIN_SEPARATION = 1e-9
-"""Minimum separation of two dyads, as a share of their size: nearer ones are no linkage, and not among the 1442."""
+"""Minimum separation of two dyads, as a share of their size. Nearer dyads make no linkage and do not count among the
+1442 orbits."""
 
 _WEIGHTS = np.exp(1j * np.arange(1, 9) ** 2)
 """Arbitrary directions that combine eight rotations into one number."""
@@ -213,7 +215,9 @@ def evaluate_nine_point_system(
 def evaluate_nine_point_system_extended(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """Compute the same with residuals in twice the precision, for solutions that ordinary rounding would lose.
+    """Compute Newton's step and the tangent with residuals in twice the precision.
+
+    This serves solutions that ordinary rounding would lose.
 
     Newton's method converges to the precision of its residuals; its matrix needs only a few correct digits.
     """
@@ -272,8 +276,10 @@ def compute_residuals(y: Complex, p: Complex, low: Complex | None = None) -> NDA
 
 
 def compute_conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Return the condition of the Jacobian at each solution, unknowns and equations scaled to their size: shape
-    (solutions,)."""
+    """Return the condition number of the Jacobian at each solution, shape (solutions,).
+
+    Unknowns and equations are scaled to their size.
+    """
     jacobian = np.zeros((len(y), 16, UNKNOWN_COUNT), np.complex128)
     s = y[:, 8:]
     s_back = -s / (1.0 + s)
@@ -312,8 +318,9 @@ def swap_dyads(y: Complex) -> Complex:
 
 
 def construct_cognate(y: Complex, p: Complex) -> Complex:
-    """Return the cognates that share the first fixed pivot: their first dyad stands on it, their second on the third
-    pivot.
+    """Return the cognates that share the first fixed pivot.
+
+    Their first dyad has this pivot, and their second dyad has the third one.
 
     With P at 0 and κ = −x₁/(x₂ − x₁) their moving pivots are q = −r₁ and q(1 − κ), their links −x₁ and κ r₂, and their
     coupler turns as the first link did (Roberts' construction).

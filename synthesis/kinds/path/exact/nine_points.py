@@ -1,11 +1,11 @@
 """All fourbars whose coupler point goes through nine points: every one of the 1442 cognate triples, real and complex.
 
 The orbits of the start are followed to the problem's points (:mod:`synthesis.kinds.path.exact.nine_point_system`). The
-end points are checked as a whole: residuals, that no two paths ended in one orbit (one of them has then jumped), and
-that the complex conjugate of every orbit is present, as real points require. Lost paths, mostly to linkages of 10⁴ or
-more times the size of the data, are followed again in smaller steps, in higher precision and from the other members of
-their orbit; orbits still missing are searched along other parameter paths, on which every orbit ends elsewhere. The
-result reports orbits that were not found: nothing is complete without all 1442.
+end points are checked as a whole: their residuals are small, no two paths end in one orbit (one of them would have
+jumped), and the complex conjugate of every orbit is present, as real points require. Lost paths, mostly to linkages of
+10⁴ or more times the size of the data, are followed again in smaller steps, in higher precision and from the other
+members of their orbit. Orbits still missing are searched along other parameter paths, on which every orbit ends
+elsewhere. The result reports orbits that were not found, and is complete only with all 1442.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ MAX_RESIDUAL = 1e-8
 """Maximum residual of a solution, with points of unit mean distance from the first one."""
 
 ORBIT_TOLERANCE = 1e-4
-"""Orbits whose keys agree to this share count as the same. A distant end point has lost many digits, but two of 1442
-keys of three complex numbers are hardly ever this close."""
+"""Relative difference of keys below which two orbits are the same. A distant end point has lost many digits, but two of
+1442 keys of three complex numbers are hardly ever this close."""
 
 REAL_TOLERANCE = 1e-6
 """A solution whose vectors differ by less than this share from conjugate pairs may be real; Newton's method then
@@ -56,16 +56,15 @@ MAX_RUNS = 4
 """Maximum number of runs; in general problems the first finds all 1442 orbits, or all but some."""
 
 MAX_LOST_SHARE = 0.1
-"""If more than this share of the paths does not end, the points are special (on a conic, say) and have fewer solutions;
-repeating the run would find the same."""
+"""Maximum share of lost paths for another run. If more are lost, the points are special (for example on a conic) and
+have fewer solutions, and another run would find the same ones."""
 
 MAX_CONDITION, MAX_SINGULAR_SHARE = 1e10, 0.01
 """For general points at most one solution in a thousand has a condition above 1e10. If more than a hundredth have, the
 points are special, and the numbers of solutions and of real ones depend on their last digits."""
 
 FIRST_STEP_TOLERANCE, RETRY_STEP_TOLERANCE, LAST_STEP_TOLERANCE = 5e-3, 1e-3, 1e-5
-"""Relative error of the prediction that a step may have: in the first run, from each of three cognates, and from them
-again."""
+"""Maximum relative prediction error of a step: in the first run, from each of three cognates, and from them again."""
 
 PORTION_SIZE = 96
 """Number of paths between two progress reports."""
@@ -80,8 +79,8 @@ class TripleSolutions(NamedTuple):
     Attributes
     ----------
     y, low : complex, shape (found, 16)
-        One solution of each orbit found, and the low-order part that rounding cut off, for points relative to the first
-        and of unit mean square distance from it.
+        One solution of each orbit found, and its low-order part, which rounding removes. Points are relative to the
+        first one and have unit mean square distance from it.
     p : complex, shape (16,)
         The points, relative and scaled, and their conjugates.
     real : complex, shape (triples, 3, 4)
@@ -92,7 +91,7 @@ class TripleSolutions(NamedTuple):
     retried : int
         Number of paths that had to be followed again.
     largest_residual : float
-        Over all orbits found.
+        Maximum residual of all orbits found.
     self_conjugate : bool
         Whether the conjugate of every orbit is among them.
     nearly_singular : int
@@ -111,7 +110,7 @@ class TripleSolutions(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether these are all triples, and would be so if the points' last digits changed."""
+        """Whether all triples are found, and would be found if the points' last digits changed."""
         return self.lost == 0 and self.self_conjugate and self.nearly_singular <= MAX_SINGULAR_SHARE * ORBIT_COUNT
 
 
@@ -125,7 +124,7 @@ def compute_triples(
     points : complex, shape (9,)
         The points, distinct.
     rng : Generator
-        Draws the paths along which the parameters move.
+        Source of the random parameter paths.
     progress : callable
         Receives the share of the paths followed.
     threads : int
@@ -133,7 +132,7 @@ def compute_triples(
 
     Returns
     -------
-    Triples
+    TripleSolutions
         ``lost`` is 0 if all 1442 were found.
     """
     moved = np.asarray(points[1:] - points[0], np.complex128)
@@ -212,11 +211,11 @@ class _OrbitSet:
         self.y, self.low = np.concatenate([self.y, y[new]]), np.concatenate([self.low, low[new]])
 
     def holds(self, y: Complex) -> bool:
-        """Return whether all these solutions are known."""
+        """Return whether all the given solutions are known."""
         return bool(self._known.mark_known(compute_orbit_keys(y, self.p)).all())
 
     def add_conjugates(self) -> None:
-        """Add the conjugate of every orbit that lacks it."""
+        """Add the missing conjugates of known orbits."""
         mirrored = compute_conjugates(self.y)
         alone = ~self._known.mark_known(compute_orbit_keys(mirrored, self.p))
         if alone.any():
@@ -256,8 +255,10 @@ def _run_paths(orbits: _OrbitSet, bend: Complex, threads: int, progress: Callabl
 def _follow_paths(
     orbits: _OrbitSet, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int, *, again: bool = False
 ) -> Mask:
-    """Follow solutions of the start to the problem, lost ones in twice the precision; return which have a sound end of
-    their own."""
+    """Follow solutions of the start to the problem; return the mask of those that have a sound end of their own.
+
+    Lost paths (``again``) are followed in twice the precision.
+    """
     ends = follow(
         PRECISE_NINE_POINT_SYSTEM if again else NINE_POINT_SYSTEM,
         y,

@@ -1,9 +1,9 @@
 """Fit fourbars to points by least squares: any number of points, with prescribed or free timing, within limits.
 
 A population of random starts descends in rounds, and only the best go on from one round to the next. The best distinct
-ones are perturbed and descend again, and are then led to minima that satisfy the client's limits up to rounding. The
-Grashof class holds by the choice of unknowns (:mod:`synthesis.fit.chart`), and multipliers enforce the limits
-(:mod:`synthesis.fit.constraints`): neither is a penalty.
+ones are perturbed and descend again, and are then refined to minima that satisfy the client's limits up to rounding.
+The Grashof class is guaranteed by the choice of unknowns (:mod:`synthesis.fit.chart`), and multipliers enforce the
+limits (:mod:`synthesis.fit.constraints`), so that no penalties are used for either.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ PORTION_SIZE = 16
 """Number of starts that a thread takes at a time: some milliseconds of work."""
 
 TIMED_START_COUNT, FREE_START_COUNT, DENSE_START_COUNT = 6000, 1800, 1300
-"""Number of random starts, over all classes and assemblies: with prescribed timing, for which a start has four random
-numbers; with free timing, for which it has more; and with free timing and more than :data:`MAX_SPARSE_POINTS` points,
-which take longer."""
+"""Number of random starts over all classes and assemblies: with prescribed timing, where a start has four random
+numbers; with free timing, where it has more; and with free timing and more than :data:`MAX_SPARSE_POINTS` points, where
+a descent takes longer."""
 
 MAX_SPARSE_POINTS = 18
 """Maximum number of points for :data:`FREE_START_COUNT`."""
@@ -72,10 +72,10 @@ WORKSPACE_START_COUNT = 300
 """Number of additional starts of a family with their pivots in the zones of a workspace."""
 
 TIMED_DESCENT_SHARE = 0.15
-"""Share of the starts with prescribed timing, those with the best linear fit, that descends."""
+"""Share of the starts with prescribed timing from which a descent is made: those with the best linear fit."""
 
 DESCENT_ROUNDS = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
-"""Rounds of descents: share of the starts that goes on, number of steps, and tolerance."""
+"""Rounds of descents: share of the starts that takes part, number of steps, and tolerance."""
 
 KICK_ROUNDS, MAX_KICKED, COPY_COUNT, KICK_SIZE = 3, 24, 6, 0.5
 """Perturbation of the best: number of rounds, of linkages, of copies of each, and the standard deviation of the change
@@ -85,7 +85,7 @@ EQUAL_COST_TOLERANCE = 1e-4
 """Relative difference below which costs belong to the same minimum."""
 
 FLIP_KICK_SIZE = 0.1
-"""That standard deviation for linkages with a flipped dyad."""
+"""Standard deviation of the same change for linkages with a flipped dyad."""
 
 KICK_SPREAD = 0.8
 """Standard deviation of the logarithm of a perturbation's standard deviation: some are small and some are large."""
@@ -100,7 +100,7 @@ RETURN_ROUNDS, MAX_RETURN_REFINED = 1, 10
 """Perturbation of minima within the limits: number of rounds, and maximum number of results that are refined."""
 
 WORKSPACE_TOLERANCE = 1e-9
-"""Violation of a workspace, in task sizes, that counts as none."""
+"""Maximum violation of a workspace, in task sizes, that counts as rounding."""
 
 MAX_FAST_POINTS, MAX_DENSE_FINALISTS = 100, 6
 """Number of points above which refinement takes longer, and the maximum number of minima then refined and verified."""
@@ -127,8 +127,9 @@ Case = tuple[int, int, float]
 
 
 class PointTask(NamedTuple):
-    """Points in task coordinates: rows (x, y, crank angle in radians, weight); the origin's place, the unit's length.
+    """Points in task coordinates, with the origin and the unit of these coordinates.
 
+    The rows are (x, y, crank angle in radians, weight).
     If points have tolerances, a weight is the inverse of one, scaled to 1 for the smallest. ``room`` is the packed
     workspace (:mod:`synthesis.fit.workspace`).
     """
@@ -140,8 +141,11 @@ class PointTask(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A linkage during the search: unknowns, state (crank angles first), half the sum of squares, status of its last
-    descent, its setting, and the crank's direction."""
+    """A linkage during the search.
+
+    It consists of the unknowns, the state (crank angles first), half the sum of squares, the status of the last
+    descent, the setting, and the direction of the crank.
+    """
 
     x: Real
     state: Real
@@ -152,7 +156,7 @@ class Candidate(NamedTuple):
 
 
 def build_point_task(problem: PathProblem) -> PointTask:
-    """Return the points about their centroid, with the task's size as the unit."""
+    """Return the points relative to their centroid, with the task's size as the unit."""
     z = np.array([point.point for point in problem.points])
     size = problem.task_size
     origin = complex(z[0] + (z - z[0]).mean())
@@ -211,8 +215,10 @@ def find_minima(
     finalists: int = MAX_FINALISTS,
     usable: UsableLimits | None = None,
 ) -> list[Candidate]:
-    """Find minima within the limits, nearest first: at most ``finalists``, within additional limits if ``usable`` is
-    given."""
+    """Find at most ``finalists`` minima within the limits, nearest first.
+
+    The limits of ``usable``, if given, apply in addition.
+    """
     thinned = _reduce_points(task)
     # Free timing finds the direction of the crank by itself.
     ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
@@ -309,9 +315,10 @@ def _list_candidates(population: _Population, setting: Real, way: int) -> list[C
 
 
 def descend_from(start: FourbarConfiguration, problem: PathProblem, task: PointTask) -> list[Candidate]:
-    """Descend from a given linkage to minima within the limits, nearest first; it is put into the required class first.
+    """Descend from a given linkage to minima within the limits, nearest first.
 
-    If any class is allowed, the descent may leave that of the start: there is one minimum then.
+    The linkage is first moved into the required class. If any class is permitted, the descent may leave that of the
+    start, and there is only one minimum.
     """
     thinned, rows = _reduce_points(task), _reduce_points(task).rows
     joints = [(joint - task.origin) / task.size for joint in start]
@@ -343,7 +350,7 @@ def descend_from(start: FourbarConfiguration, problem: PathProblem, task: PointT
 def _solve_all_constrained(
     chosen: list[Candidate], task: PointTask, thinned: PointTask, report: Callable[[float], None]
 ) -> list[Candidate]:
-    """Lead candidates to minima within their limits; drop those that fail."""
+    """Refine candidates to minima within their limits; drop those that fail."""
     minima: list[Candidate | None] = [None] * len(chosen)
 
     def process_portion(some: slice) -> None:
@@ -388,8 +395,10 @@ def _descend_population(
     rng: np.random.Generator,
     drawn: WorkspaceStarts | None = None,
 ) -> _Population:
-    """Generate and descend the population of one class and assembly, from random starts and from those in a
-    workspace."""
+    """Generate the population of one class and assembly, and descend from it.
+
+    The starts are random ones and, if ``drawn`` is given, those drawn in a workspace.
+    """
     n = len(rows)
     free = FREE_START_COUNT if n <= MAX_SPARSE_POINTS else DENSE_START_COUNT
     count = (TIMED_START_COUNT if problem.prescribed else free) // cases
@@ -433,8 +442,10 @@ def _select_workspace_starts(drawn: WorkspaceStarts, points: int, setting: Real)
 def _perturb_population(
     problem: PathProblem, bases: tuple[_Population, _Population], rows: Real, setting: Real, rng: np.random.Generator
 ) -> _Population:
-    """Descend from perturbed copies of the best of a case, and from flipped copies of the best of its other
-    assembly."""
+    """Descend from perturbed copies of the best members of a case.
+
+    Flipped copies of the best members of the same case with the other assembly are added.
+    """
     n, sign = len(rows), float(setting[SIGN_INDEX])
     parts = []
     for flip, base, its_sign, copies in (
@@ -464,8 +475,10 @@ def _perturb_population(
 
 
 class _Population(NamedTuple):
-    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points + limits), costs (k,), and the status
-    of the last descent of each (k,)."""
+    """Starts that descend together.
+
+    Unknowns have shape (k, unknowns), states (k, 3 points + limits), costs and the status of the last descent (k,).
+    """
 
     starts: Real
     states: Real
@@ -494,7 +507,7 @@ def _select_best(population: _Population, count: int) -> _Population:
 
 
 def _drop_duplicates(population: _Population, count: int) -> _Population:
-    """Drop members whose cost equals the previous one's (same minimum); best first."""
+    """Return the best members, best first, without those of equal cost, which are at the same minimum."""
     kept = np.flatnonzero(np.diff(population.costs, prepend=-1.0) > EQUAL_COST_TOLERANCE * population.costs)[:count]
     return _Population._make(column[kept] for column in population)
 

@@ -40,8 +40,8 @@ from synthesis.kinds.path.residuals.point_assignment import assign_samples
 from synthesis.kinds.path.residuals.points import PHASE_UNKNOWN
 
 DRAW_SIZE = 12
-"""Number of random numbers of a start: three or four for the shape, phase, range, direction, and the warp of the
-run."""
+"""Number of random numbers of a start: three or four for the shape, then phase, range, direction, and warp of the run.
+"""
 
 SAMPLE_COUNT = 96
 """Number of samples of a curve to which points are assigned."""
@@ -62,15 +62,16 @@ CLASS_MARGIN = 1e-5
 """Margin, as a share of the sum of the links, with which a linkage that has left its class is put back into it."""
 
 MIN_SPREAD = 1e-12
-"""Added to sums of squared unit vectors used as divisors: a shape that does not move has no best place."""
+"""Number added to sums of squared unit vectors that serve as divisors, because a shape that does not move has no best
+place."""
 
 MIN_SCALE, MAX_SCALE = 1e-9, 1e9
 """Minimum and maximum ground link of a start, in task sizes; beyond them it is a degenerate solution of the linear
 problem."""
 
 UNREACHABLE_SQUARE = 1e18
-"""Squared distance, task sizes squared, of a sample at which the linkage does not close; finite, because sums are
-compared."""
+"""Squared distance, in squared task sizes, assigned to a sample at which the linkage does not close. It is finite
+because sums are compared."""
 
 MIN_GROUND = 1e-3
 """Minimum ground link of a start, in task sizes, if its direction is given."""
@@ -105,9 +106,9 @@ def _fit_ground(
 
 @njit(cache=True, nogil=True)
 def fit_place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
-    """Fit place, size and coupler point of a shape at crank angles from the ground line; return half the sum of
-    squares.
+    """Fit position, size and coupler point of a shape at given crank angles; return half the sum of squares.
 
+    The angles are measured from the ground line.
     ``x`` receives the linkage's nine numbers. ``turn`` is the angle of the ground line for absolute crank angles.
     """
     n = len(points)
@@ -198,8 +199,8 @@ def make_free_starts(
 ) -> None:
     """Make starts with free timing: linkages into ``starts``, crank angles from the ground line into ``runs``.
 
-    ``along`` are the points' places along the path that they form, as shares of its closed length: the way back from
-    the last to the first counts too.
+    ``along`` contains the positions of the points along the path that they form, as shares of its closed length, which
+    includes the way back from the last point to the first.
     """
     n = len(points)
     lengths = np.empty(4)
@@ -225,7 +226,7 @@ def make_free_starts(
             begin = math.pi * draw[4]
             for k in range(n):
                 s = along[k]
-                # An even run is rarely right: cranks pass some parts of a curve much faster than others.
+                # Crank angles are rarely proportional to path length: some parts of a curve are passed much faster.
                 warp = draw[8] * (math.sin(2.0 * math.pi * s + 3.0 * draw[9]) - math.sin(3.0 * draw[9]))
                 angles[k] = begin + way * (whole * s + 0.8 * warp)
         else:
@@ -249,8 +250,10 @@ def make_free_starts(
 
 @njit(cache=True, nogil=True)
 def assign_nearest_angles(x: Real, points: Real, setting: Real, angles: Real) -> float:
-    """Find crank angles at which a linkage comes nearest to the points in order, by samples; return half the sum of
-    squares."""
+    """Find by samples the crank angles at which a linkage is nearest to the points in order.
+
+    Returns half the sum of squares.
+    """
     n = len(points)
     lengths, slopes = np.empty(4), np.empty((4, 4))
     compute_lengths(int(setting[FAMILY_INDEX]), x, lengths, slopes)
@@ -304,8 +307,7 @@ def assign_nearest_angles(x: Real, points: Real, setting: Real, angles: Real) ->
 
 
 def compute_path_shares(points: Real) -> Real:
-    """Return the points' places along the closed polygon that they form, as shares of its length; the last is below
-    1."""
+    """Return the positions of points along the closed polygon that they form, as shares of its length, all below 1."""
     z = points[:, 0] + 1j * points[:, 1]
     chords = np.abs(np.diff(np.append(z, z[0])))
     whole = np.concatenate([[0.0], np.cumsum(chords)])

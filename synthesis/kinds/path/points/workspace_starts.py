@@ -1,7 +1,8 @@
 """Draw fourbars with their pivots in the zones of a workspace and P at the first point: starts of fits.
 
-Pivots are drawn in their zones, at the first point; one without a zone is drawn in the box, or else around the points.
-Each linkage is swept, and the points are assigned to its curve in order, so that only linkages near the points go on.
+Pivots are drawn in their zones, at the first point. A pivot without a zone is drawn in the box, or else around the
+points. Each linkage is swept, and the points are assigned to its curve in order, so that only linkages near the points
+are kept.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ START_DUPLICATE_TOLERANCE = 0.08
 
 
 def is_workspace_constrained(problem: PathProblem) -> bool:
-    """Return whether a problem constrains the workspace: an empty block constrains nothing."""
+    """Return whether a problem constrains the workspace; an empty ``space`` constrains nothing."""
     return len(pack_workspace(problem.space, 0j, problem.task_size)) > 0
 
 
@@ -86,7 +87,7 @@ def draw_workspace_starts(
         A family of fourbars.
     rng : numpy.random.Generator
     keep, drawn : int
-        Number of linkages returned at most, and drawn.
+        Maximum number of linkages returned, and number drawn.
     """
     assert problem.space is not None
     joints = _draw_joints(problem.space, origin, size, rng, drawn, points)
@@ -111,7 +112,7 @@ def draw_workspace_starts(
 
 
 def _select_distinct(joints: Complex, keep: int) -> NDArray[np.int64]:
-    """Return rows whose joints are not all near to those of an earlier row."""
+    """Return at most ``keep`` rows whose joints are not all close to those of an earlier row."""
     chosen: list[int] = []
     for n, one in enumerate(joints):
         if not chosen or np.abs(joints[chosen] - one).max(axis=1).min() > START_DUPLICATE_TOLERANCE:

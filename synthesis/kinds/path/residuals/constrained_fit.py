@@ -1,4 +1,4 @@
-"""Lead fits of points to satisfy all constraints, those of a workspace included."""
+"""Fits to points under all constraints, including those of a workspace."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS
 from synthesis.numerics.status import Status
 
 MAX_WORKSPACE_ROUNDS, MAX_WORKSPACE_STEPS = 8, 80
-"""Maximum number of descents in a workspace, and of steps of each: its margins take thirty times as long as all other
+"""Maximum number of descents in a workspace, and of steps of each; its margins take thirty times as long as all other
 constraints."""
 
 

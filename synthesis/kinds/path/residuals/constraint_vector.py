@@ -53,13 +53,13 @@ PHASE_FREE, PHASE_ABSOLUTE, PHASE_GROUND_LINE = range(3)
 """The line from which prescribed crank angles are measured."""
 
 MAX_LINK = 50.0
-"""Longest link, in task sizes, if the client gives none: without a limit fits run off to sliders."""
+"""Maximum link length, in task sizes, if the client gives no limit; without a limit fits tend to sliders."""
 
 MIN_LINK = 1e-4
 """Shortest link, in task sizes; a shorter one could not be drawn, let alone be built."""
 
 MIN_GRASHOF = 1e-6
-"""Minimum of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
+"""Minimum of s₁, s₂ and s₃ as a share of the sum of all links; below it a linkage counts as at a change point."""
 
 LIMIT_WEIGHT = 1e3
 """Weight of limits, in task units, in the first descent of
@@ -136,8 +136,10 @@ def pack_path_workspace(problem: PathProblem, origin: complex, size: float) -> R
 
 
 def restrict_to_zones(setting: Real) -> Real:
-    """Return a setting whose workspace consists of the pivots' zones alone: they need no motion, for descents in great
-    number."""
+    """Return a setting whose workspace consists only of the zones of the pivots.
+
+    Zones can be checked without driving the linkage, which large numbers of descents require.
+    """
     return np.concatenate([setting[:PATH_SETTING_SIZE], select_zones(setting[PATH_SETTING_SIZE:])])
 
 
@@ -149,7 +151,7 @@ def count_setting_margins(setting: Real) -> int:
 def _intersect_regions(regions: list[Region | None], origin: complex, size: float) -> tuple[float, float, float, float]:
     """Return the box common to all given regions, shrunk by a margin: minimum and maximum x, minimum and maximum y.
 
-    A narrow one keeps half of its width.
+    A narrow box keeps half of its width.
     """
     x, y = (-math.inf, math.inf), (-math.inf, math.inf)
     for region in regions:

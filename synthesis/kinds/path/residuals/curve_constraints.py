@@ -52,7 +52,7 @@ from synthesis.numerics.portions import run_in_portions
 from synthesis.numerics.status import Status
 
 LENGTH_TOLERANCE = 1e-9
-"""Relative excess of a length that is rounding: cognates repeat a curve only up to a few roundings."""
+"""Maximum relative excess of a length that counts as rounding; cognates repeat a curve to a few rounding errors."""
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
 """Weight of constraints, in the target's unit, in descents from the shape library, and the tolerance of these
@@ -98,7 +98,7 @@ def tighten_to_usable(setting: Real, degrees: float, ratio: float) -> Real:
 
 
 def is_place_constrained(setting: Real) -> bool:
-    """Return whether the constraints depend on where a linkage stands and how large it is, beyond its longest link."""
+    """Return whether the constraints depend on the position and size of a linkage, apart from its longest link."""
     boxes = np.concatenate([setting[BOXES], setting[MOVING], setting[POINT_BOX]])
     return bool(np.isfinite(boxes).any() or setting[LINKS][0] > 0.0 or len(setting) > PATH_SETTING_SIZE)
 
@@ -152,8 +152,10 @@ def descend_constrained(
 def descend_softly(
     family: int, x: Real, theta: Real, sign: Real, points: Complex, setting: Real, steps: int
 ) -> Descent:
-    """Descend a few steps from every start with constraints as weighted residuals; return the ends, shapes (n, m), (n,
-    points), (n,)."""
+    """Descend a few steps from every start, with constraints as weighted residuals.
+
+    Returns the ends of the descents, shapes (n, m), (n, points) and (n,).
+    """
     n, limits = len(points), count_setting_margins(setting)
     starts, states = np.array(x), np.zeros((len(x), 3 * n + limits))
     states[:, :n] = theta - starts[:, 2, None]
@@ -179,7 +181,8 @@ def descend_softly(
 def measure_violation(family: int, x: Real, theta: Real, sign: float, setting: Real) -> float:
     """Return the largest violation of any constraint by a fit, in the units of margins; 0 if it satisfies all.
 
-    The order of points is one of them: its violation is the crank's largest step back, or its excess over a full turn.
+    The order of points is one of the constraints: its violation is the maximum backward step of the crank, or its
+    excess over a full turn.
     """
     worst = float(measure_violations(family, x[None], theta[None], np.array([sign]), setting)[0])
     if setting[ORDER_INDEX] > 0.0 and len(theta) > 1:
@@ -193,8 +196,8 @@ def measure_violation(family: int, x: Real, theta: Real, sign: float, setting: R
 def measure_violations(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> Real:
     """Return the largest constraint violation of each of many linkages, shape (n, m), except for the order of points.
 
-    ``theta``, shape (n, points), are crank angles at the points; a linkage that does not close there violates nothing
-    by its moving pivots. One that does not close over its range violates the workspace infinitely.
+    ``theta``, shape (n, points), contains the crank angles at the points. A linkage that does not close there has no
+    violation by its moving pivots. The workspace violation of a linkage that does not close over its range is infinite.
     """
     lengths, slopes, still = np.empty(4), np.empty((4, 4)), np.zeros(x.shape[1])
     values, gradients = np.empty(LIMIT_COUNT), np.empty((LIMIT_COUNT, x.shape[1]))
@@ -251,7 +254,7 @@ def _check_all(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
 def _build_setting(family: int, sign: float, setting: Real) -> Real:
     """Return the constraints of one family and assembly, with a minimum distance from change points.
 
-    Constrained fits run to change points, at which no crank would turn through.
+    Without this distance constrained fits tend to change points, at which no crank can turn through.
     """
     demanded = setting.copy()
     demanded[FAMILY_INDEX], demanded[SIGN_INDEX], demanded[CHANGE_POINT] = family, sign, MIN_GRASHOF

@@ -32,8 +32,8 @@ MIN_DAMPING, MAX_DAMPING = 1e-12, 1e10
 """Minimum damping, and the value above which the descent has stalled."""
 
 MIN_CURVATURE, MIN_TURN_CURVATURE = 1e-14, 1e-12
-"""Added to the diagonals of A and, times the point's weight, of D, so that an unknown without influence stays in place.
-Task units: both diagonals are sums of squared distances in them."""
+"""Numbers added to the diagonal of A and, multiplied by the point's weight, to that of D, so that an unknown without
+influence stays in place. Both diagonals are sums of squared distances in task units."""
 
 MAX_TURN_STEP, MAX_LOG_STEP = 0.4, 1.0
 """Maximum change of a crank angle (radians) and of a logarithm in one step: beyond it the linear model fails."""
@@ -45,8 +45,8 @@ ZERO_COST = 1e-28
 """Cost, in squared task sizes, that consists of rounding alone."""
 
 LENGTH_WEIGHT = 4.0
-"""Weight of the relative excess of a length over the longest allowed. It only guides the search: answers are
-verified."""
+"""Weight of the relative excess of a length over the longest permitted one. It only guides the search, because answers
+are verified."""
 
 UNLIMITED_PIVOTS = np.array([[-np.inf, np.inf]] * 4)
 """Bounds of fixed pivots, shape (4, 2), for problems that do not constrain them."""
@@ -59,7 +59,7 @@ PORTION_SIZE = 5
 
 CYCLE_SAMPLE_COUNT, MIN_TRANSMISSION_SINE = 48, 0.05
 """Number of crank positions per cycle at which a geared fivebar must not jam, and the minimum sine of its transmission
-angle there: a margin, so that it does not jam between them either."""
+angle at them, which includes a margin so that it does not jam between them either."""
 
 
 class LinkageLimits(NamedTuple):
@@ -125,7 +125,7 @@ def _compute_transmission_sine(x: Real, lengths: Real, sign: float, ratio: float
 
 @njit(**OPTIONS)
 def is_jamming(x: Real, lengths: Real, sign: float, ratio: float, cycle: float) -> bool:
-    """Return whether a geared fivebar jams, or nearly so, somewhere in a cycle of its crank (radians)."""
+    """Return whether a geared fivebar jams, or nearly jams, anywhere in a cycle of its crank, radians."""
     for k in range(CYCLE_SAMPLE_COUNT):
         if _compute_transmission_sine(x, lengths, sign, ratio, cycle * k / CYCLE_SAMPLE_COUNT) < MIN_TRANSMISSION_SINE:
             return True
@@ -262,8 +262,10 @@ def _add_guides(
 def _solve_by_elimination(
     a: Real, g: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, work: Real, step: Real
 ) -> bool:
-    """Compute the damped step δx into ``step`` by Schur's complement of the crank angles; False if the matrix is
-    singular."""
+    """Compute the damped step δx into ``step`` by the Schur complement of the crank angles.
+
+    Returns False if the matrix is singular.
+    """
     m, n = len(g), len(h)
     work[:] = a
     for j in range(m):

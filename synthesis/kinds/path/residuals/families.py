@@ -27,8 +27,7 @@ def list_families(problem: PathProblem) -> list[int]:
 
 
 def compute_joints(family: int, x: Real, sign: float, theta: float) -> tuple[bool, FourbarConfiguration]:
-    """Return whether a member closes, away from a toggle, with its crank at ``theta`` (radians); and its joints
-    there."""
+    """Return whether a member closes, away from a toggle, with its crank at ``theta``, radians, and its joints."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     compute_lengths(family, x, lengths, chart)
     closes, p, unit = place_linkage(family, x, lengths, sign, 0.0, theta)

@@ -1,11 +1,11 @@
-"""Residuals of a fourbar that guides a point past points, with prescribed and with free timing.
+"""Residuals of a fourbar that guides its coupler point past given points, with prescribed or free timing.
 
 With prescribed timing each point has its crank angle, and the residuals are the coordinates of P − z.
 
 With free timing the crank angles are eliminated: for each linkage they are those at which P is nearest to the points in
 their order. Newton's method finds each angle by itself, and angles that come out of order are pooled (isotonic
-regression: a quadratic programme with a diagonal matrix). At these angles the derivative of the distances by the angles
-vanishes, so that the Jacobian by the other unknowns is that at fixed angles, less its part along the curve (variable
+regression: a quadratic program with a diagonal matrix). At these angles the derivative of the distances by the angles
+vanishes, so that the Jacobian by the other unknowns is that at fixed angles minus its part along the curve (variable
 projection; Golub & Pereyra 1973, doi:10.1137/0710036, in Kaufman's form). Points that share an angle are projected
 together.
 """
@@ -46,7 +46,7 @@ PHASE_UNKNOWN = 9
 """Index of the crank's phase among the unknowns, behind those of the chart; only if the phase is free."""
 
 MAX_ABS_LOG = 40.0
-"""Maximum logarithm of a length, in absolute value: beyond it shorter lengths are rounding relative to longer ones."""
+"""Maximum absolute logarithm of a length; beyond it the shorter lengths are lost in the rounding of the longer ones."""
 
 DIFFERENCE_STEP = 1e-5
 """Angle, radians, over which the curvature of P's path is differenced."""
@@ -56,10 +56,10 @@ MAX_NEWTON_STEPS = 4
 one."""
 
 MAX_TURN_STEP = 0.2
-"""Maximum size of such a step, radians."""
+"""Maximum size of a Newton step, radians."""
 
 TURN_TOLERANCE = 1e-7
-"""Newton step, radians, after which the angles have converged: the next would be below rounding."""
+"""Newton step, radians, after which the angles have converged; the next step would be below rounding."""
 
 MIN_SPEED = 1e-9
 """Speed of P, task sizes per radian, below which its path has no direction."""
@@ -91,7 +91,7 @@ def _project(jacobian: Real, first: int, last: int, direction: Real) -> None:
 
 @njit(cache=True, nogil=True)
 def settle_angles(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, blocks: NDArray[np.int64]) -> bool:
-    """Move crank angles to where P is nearest to the points, in order; False beyond a toggle.
+    """Move crank angles to the positions at which P is nearest to the points, in order; return False beyond a toggle.
 
     The direction of the order is that of the given angles: from the first to the last.
     """
@@ -178,8 +178,10 @@ def _append_margin_rows(
     x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, setting: Real, multipliers: Real,
     state: Real, residuals: Real, jacobian: Real, m: int,
 ) -> int:  # fmt: skip
-    """Append the rows of the workspace and of the constraints; return the number of rows, −1 if the motion does not
-    close."""
+    """Append the rows of the workspace and of the constraints.
+
+    Returns the number of rows, or −1 if the motion does not close.
+    """
     values, gradients = state[state.size - LIMIT_COUNT :], np.empty((LIMIT_COUNT, x.size))
     compute_margins(x, lengths, slopes, ends, turns[0], setting, values, gradients)
     room = setting[PATH_SETTING_SIZE:]

@@ -1,9 +1,9 @@
 """Residuals of a sixbar that guides a point along a curve, in both directions, and its constraints as margins.
 
 The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.residuals.points`: for each sixbar they are
-moved to where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The
-*way back* is that of P at equal steps of the crank: its distance from the nearest side of the polyline through the
-points.
+moved to the positions at which P is nearest to the points, and the Jacobian is that at fixed angles minus its part
+along the curve. The opposite direction, the *way back*, is the distance of P at equal steps of the crank from the
+nearest side of the polyline through the points.
 
 The constraints are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.constraints`), and in addition
 
@@ -13,7 +13,7 @@ The constraints are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.constrai
 * the sides of the box of O6, if D is fixed;
 * at equal steps of the crank, from each side of a box, the distance of the joint that is nearest to it or beyond it.
 
-A row of derivatives is computed only if its limit bears a load.
+Derivatives of a margin are computed only if it is active, that is, if its multiplier bears a load.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ BACK = SIXBAR_SETTING.index("back")
 """Weight of the way back per step, a square root; 0 if it does not count."""
 
 ROOM = SIXBAR_SETTING.slice("room")
-"""Box that all joints stay in (x from, to, y from, to); infinite if there is none."""
+"""Box of all joints (x min, x max, y min, y max); infinite if there is none."""
 
 SIXBAR_SETTING_SIZE = SIXBAR_SETTING.size
 """Number of values of a setting."""

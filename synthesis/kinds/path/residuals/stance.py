@@ -8,8 +8,8 @@ the stance line and the place s along it; the margins at each are
     f/2 − |h − (max h + min h)/2|,
     t − |(θ₁ − θ₀) s′/(s₁ − s₀) − 1|,        s′ = (s(θ + δ) − s(θ − δ))/2δ,
 
-f the flatness, t the share by which the speed may differ. They are margins of
-:mod:`synthesis.numerics.augmented_lagrangian` before all others. The rows of points and of the other constraints are
+where f is the flatness and t the share by which the speed may differ. They precede all other margins of
+:mod:`synthesis.numerics.augmented_lagrangian`. The rows of points and of the other constraints are
 those of :mod:`synthesis.kinds.path.residuals.points` and :mod:`synthesis.kinds.path.residuals.sixbar`; slider-cranks
 and geared fivebars have constraints on their fixed pivots and their longest link.
 """
@@ -177,8 +177,10 @@ def _compute_margins(
 
 @njit(**OPTIONS)
 def _locate_place(k: int, first: float, last: float) -> tuple[float, float]:
-    """Return the share of the stance at a place, and the crank angle there: first those before each angle, then those
-    behind."""
+    """Return the share of the stance and the crank angle of place ``k``.
+
+    The places before each angle come first, then those behind it.
+    """
     share = (k % PLACE_COUNT) / (PLACE_COUNT - 1)
     return share, first + share * (last - first) + (DIFFERENCE_STEP if k >= PLACE_COUNT else -DIFFERENCE_STEP)
 
@@ -221,9 +223,10 @@ def _compute_simple_stance(
 def compute_fourbar_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Compute rows of a fourbar: those of path_rows, and its stance's; see :data:`synthesis.numerics.levenberg.ROWS`.
+    """Compute the rows of :func:`compute_path_rows` and those of the stance.
 
-    ``setting`` begins with the stance. ``state`` is that of path_rows, with the stance's margins before all others.
+    See :data:`synthesis.numerics.levenberg.ROWS`. ``setting`` begins with the stance. ``state`` is that of
+    :func:`compute_path_rows`, with the margins of the stance before all others.
     """
     n, own = len(points), setting[STANCE_SIZE:]
     inner = np.empty(len(state) - MARGIN_COUNT)
@@ -281,7 +284,10 @@ def _append_stance_rows(
 def compute_sixbar_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Compute rows of a sixbar: those of sixbar_rows, and its stance's; see :func:`compute_fourbar_stance_rows`."""
+    """Compute the rows of :func:`compute_sixbar_rows` and those of the stance.
+
+    See :func:`compute_fourbar_stance_rows`.
+    """
     n, own = len(points), setting[STANCE_SIZE:]
     inner = np.empty(len(state) - MARGIN_COUNT)
     inner[:n] = state[:n]
@@ -346,10 +352,10 @@ def _settle_simple_angle(
 def compute_simple_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Compute rows of a slider-crank or a geared fivebar: points at their nearest places, stance, longest link, fixed
-    pivots.
+    """Compute the rows of a slider-crank or geared fivebar.
 
-    ``state`` has the crank angles at the points, the margins of the stance, and those of lengths and pivots.
+    They are those of the points, at their nearest places, of the stance, of the longest link and of the fixed pivots.
+    ``state`` contains the crank angles at the points, the margins of the stance, and those of lengths and pivots.
     """
     n, unknowns, family = len(points), len(x), int(setting[SIMPLE_FAMILY])
     sign, ratio = setting[SIMPLE_SIGN], setting[RATIO]
@@ -407,8 +413,7 @@ def compute_simple_stance_rows(
 
 @njit(**OPTIONS)
 def _compute_angle_margin(lengths: Real, chart: Real, cosine: float, values: Real, gradients: Real) -> None:
-    """Compute the margin of a slider-crank's minimum transmission angle: its cosine (r + |e|)/l must not exceed
-    ``cosine``."""
+    """Compute the margin of a slider-crank's transmission angle: (r + |e|)/l must not exceed ``cosine``."""
     crank, rod, offset = lengths[0], lengths[1], lengths[2]
     least, sign = (crank + abs(offset)) / rod, (1.0 if offset >= 0.0 else -1.0)
     values[LENGTH_MARGIN_COUNT - 1] = cosine - least

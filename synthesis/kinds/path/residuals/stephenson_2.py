@@ -79,8 +79,10 @@ def _settle_angle(x: Real, lengths: Real, setting: Real, z: complex, angle: floa
 def _compute_link_margins(
     x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, values: Real, rows: Real
 ) -> int:
-    """Compute margins of lengths and ratios, as those of a Stephenson III on the input; return the number of the next
-    margin."""
+    """Compute the margins of lengths and ratios, which are those of a Stephenson III on the input link.
+
+    Returns the index of the next margin.
+    """
     here, neutral = x.copy(), setting.copy()
     # The input is the ground of the inverted chain, so that place and direction, and all boxes of the frame, are
     # neutralized.
@@ -133,8 +135,10 @@ def _compute_pivot_margins(x: Real, setting: Real, values: Real, rows: Real) -> 
 def _write_edge_margins(
     setting: Real, multipliers: Real, weight: float, places: Complex, number: int, values: Real
 ) -> bool:
-    """Write the margins of the joints from the four edges of the box, from ``number`` on; return whether one is
-    loaded."""
+    """Write the margins of the joints from the four edges of the box, from index ``number`` on.
+
+    Returns whether one of them bears a load.
+    """
     pressed = False
     for edge in range(4):
         limit, toward = setting[ROOM][edge], 1.0 if edge % 2 == 0 else -1.0
@@ -170,8 +174,9 @@ def _differentiate_edge_margins(
 def compute_inverted_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Compute rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 if the linkage does not close, or turns
-    over.
+    """Compute rows for the descent of :mod:`synthesis.numerics.levenberg`.
+
+    Returns their number, or −1 if the linkage does not close or turns over.
 
     ``points`` (n, 4): x and y, unused, and the square root of the weight. ``state``: angles of link 3 at the points,
     then margins.

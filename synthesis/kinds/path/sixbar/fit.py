@@ -1,4 +1,4 @@
-"""Descend from sixbars to a curve on all of their dimensions: with soft constraints first, then with enforced ones.
+"""Fits of all dimensions of sixbars to a curve: first with soft constraints, then with enforced ones.
 
 The rows are those of :mod:`synthesis.kinds.path.residuals.sixbar`, or of
 :mod:`synthesis.kinds.path.residuals.stephenson_2`; the methods are Levenberg and Marquardt's
@@ -63,8 +63,11 @@ MAX_ROUNDS, MAX_CONSTRAINED_STEPS = 8, 60
 
 
 class CrankSteps(NamedTuple):
-    """Numbers of equal crank steps: those at which the curve's distance from the points counts too (0 for none), and
-    those at which the transmission angle is constrained."""
+    """Numbers of equal crank steps.
+
+    The first is that of steps at which the curve's distance from the points counts (0 for none), the second that of
+    steps at which the transmission angle is constrained.
+    """
 
     back: int
     margins: int
@@ -122,7 +125,7 @@ def descend_softly(
 
     Parameters
     ----------
-    fits : Fits
+    fits : SixbarFits
     points, weights : complex and float, shape (points,)
         The points to fit, and the weights of the squared distances.
     setting : float
@@ -166,7 +169,7 @@ def fit_constrained(
     steps: int = MAX_CONSTRAINED_STEPS,
     stance: Real | None = None,
 ) -> SixbarFits:
-    """Lead fits to satisfy all constraints; an infinite cost marks the fits that fail.
+    """Refit sixbars under all constraints; an infinite cost marks the fits that fail.
 
     ``stance`` describes a stance by the points' rows, see :func:`synthesis.kinds.path.curve.stance_fit.pack_stance`.
     """

@@ -56,7 +56,7 @@ def build_fitted_sixbar(
 def _build_inverted(
     kind: str, form: Form, x: Real, lengths: Real, signs: Real, theta: float, centre: complex, size: float
 ) -> SixbarMechanism | None:
-    """Return the same for a Stephenson II, with its link 3 at θ relative to the input."""
+    """Return the Stephenson II sixbar of a fit with its link 3 at θ relative to the input; None as above."""
     shown = np.empty(GROUND_JOINT_COUNT, np.complex128)
     if not compute_inverted_joints(x, lengths, float(signs[0]), form.carrier, float(signs[1]), theta, shown)[0]:
         return None

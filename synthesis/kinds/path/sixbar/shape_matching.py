@@ -38,7 +38,8 @@ from synthesis.numerics.portions import THREAD_COUNT
 from synthesis.results.ranking import select_distinct
 
 MIN_TRANSMISSION_ANGLE = 15.0
-"""Minimum transmission angle, degrees, of both dyads of a drawn sixbar: one nearer to a toggle seldom leaves it."""
+"""Minimum transmission angle, degrees, of both dyads of a drawn sixbar; descents that start closer to a toggle seldom
+leave it."""
 
 LENGTH_TRIAL_COUNT = 12
 """Number of pairs of lengths tried for a dyad."""
@@ -50,11 +51,11 @@ OVERSUPPLY_FACTOR = 4
 """Multiple of the requested number that is searched for distinct sixbars."""
 
 MAX_OVERSIZE_RATIO = 2.0
-"""Starts with links at most this many times too long are still followed: most shrink in the descent."""
+"""Maximum excess factor of the links of a start over the longest permitted link; most links shrink in the descent."""
 
 
 class Form(NamedTuple):
-    """A sixbar's build: family of its fourbar, and the links that carry and hold the dyad."""
+    """Form of a sixbar: family of its fourbar, and the links that carry and hold the dyad."""
 
     family: int
     carrier: int
@@ -75,7 +76,8 @@ FORMS: dict[str, tuple[Form, ...]] = {
     ),
     "stephenson_3": tuple(Form(family, COUPLER, GROUND) for family in (CRANK_ROCKER, DOUBLE_CRANK)),
 }
-"""The builds of each type; P is on the dyad's link at the carrier, or of a Stephenson II on the carrier itself."""
+"""Forms of each type. P is on the link of the dyad that is joined to the carrier, or in a Stephenson II on the carrier.
+"""
 
 FAMILIES = {
     "any": (CRANK_ROCKER, DOUBLE_CRANK),
@@ -95,7 +97,7 @@ class PlacedSixbars(NamedTuple):
         Unknowns of :mod:`synthesis.fit.sixbar_curve`.
     signs : float, shape (n, 2)
         Assemblies of the fourbar's dyad and of the other.
-    theta : float, shape (n, SHAPE_POINTS)
+    theta : float, shape (n, SHAPE_POINT_COUNT)
         Crank angles at the target's shape points, radians.
     unlike : float, shape (n,)
         Dissimilarity √(1 − ρ²).
@@ -113,8 +115,10 @@ def _sweep_sixbars(
     form_family: int, carrier: int, holder: int, x: Real, signs: Real, tried: Real, curves: Complex,
     good: NDArray[np.bool_],
 ) -> None:  # fmt: skip
-    """Choose lengths of the dyad among those ``tried`` (n, pairs, 2), in units of the maximum C D; scale P with C E;
-    sweep all."""
+    """Choose the lengths of the dyads, scale P with C E, and sweep all sixbars.
+
+    The lengths are chosen among those ``tried`` (n, pairs, 2), in units of the maximum of C D.
+    """
     n, steps = curves.shape
     lengths, chart = np.empty(4), np.zeros((4, 4))
     places, pins = np.empty(6, np.complex128), np.empty((steps, 2), np.complex128)
@@ -196,7 +200,7 @@ def find_similar_sixbars(
     Parameters
     ----------
     form : Form
-    target : complex, shape (SHAPE_POINTS,)
+    target : complex, shape (SHAPE_POINT_COUNT,)
         Equal steps along the target.
     closed : bool
         Whether it is a closed curve; an open one is compared with windows of the curves.
@@ -264,8 +268,10 @@ def _place_each(
     family: int, carrier: int, holder: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool,
     x: Real, signs: Real, at: Real, marks: Complex,
 ) -> None:  # fmt: skip
-    """Put every sixbar on the target in place; return crank angles at its points, and the joints at the first, in
-    ``marks``."""
+    """Move every sixbar onto the target, in place.
+
+    ``at`` receives the crank angles at the target's points, ``marks`` the joints at the first point.
+    """
     lengths, chart = np.empty(4), np.zeros((4, 4))
     curve, theta = np.empty(SWEEP_STEP_COUNT, np.complex128), np.empty(SWEEP_STEP_COUNT)
     middle, places = target.mean(), np.empty(6, np.complex128)

@@ -6,9 +6,9 @@ For every form of the requested types (:data:`~synthesis.kinds.path.sixbar.shape
 2. they descend on all of their dimensions at equal steps along the target, with the constraints as penalties;
 3. copies of the best with changed dimensions descend again: such descents end in many minima.
 
-The best of all forms are then fitted to the points themselves, and to the way between them if the points show it, and
-led to satisfy the constraints. :mod:`synthesis.kinds.path.residuals.sixbar` lists the constraints known to the kernels;
-all constraints are verified on the driven sixbar. Without a required transmission angle, at least
+The best of all forms are then fitted to the points themselves, and to the curve between them if the points define it,
+with all constraints enforced. :mod:`synthesis.kinds.path.residuals.sixbar` lists the constraints known to the kernels;
+all constraints are verified on the driven sixbar. If no transmission angle is required, at least
 :data:`~synthesis.results.simplest_type.SOUND_TRANSMISSION_ANGLE` degrees are the aim.
 """
 
@@ -61,18 +61,18 @@ DRAW_COUNT, FOLLOWED_COUNT = 229376, 2100
 """Number of sixbars drawn, and of the most similar that are followed, over all forms."""
 
 MAX_FORM_DRAWS, MAX_FORM_FOLLOWED, OPEN_DRAW_SHARE, EXACT_DRAW_SHARE = 65536, 600, 0.125, 0.25
-"""The same for one form, at most; the share of the first for a stroke, which is compared with parts of each curve; and
-the share of both for points to be met exactly, which leave much freedom."""
+"""Maximum of the same two numbers for one form; share of the drawn number for a stroke, which is compared with parts of
+each curve; and share of the drawn and followed numbers for exact points, which leave much freedom."""
 
 MAX_ROUGH_STEPS, MAX_FINE_STEPS, MAX_KICKED_STEPS = 40, 100, 60
-"""Number of steps of descents: of all followed sixbars, of the best of them, and of changed copies."""
+"""Number of steps of descents: of all followed sixbars, of the best of them, and of perturbed copies."""
 
 REFINED_SHARE = 0.125
-"""Share of the followed sixbars, the best, that are refined."""
+"""Share of the followed sixbars that are refined, the best ones."""
 
 KICK_ROUNDS, MAX_KICKED, COPY_COUNT, KICK_SIZE, KICK_SPREAD, NON_LOG_KICK_SHARE = 2, 12, 10, 0.15, 0.8, 0.4
-"""Changed copies: rounds, sixbars, copies of each; standard deviation of the change of their logarithms of lengths,
-that of its own logarithm, and the share of it for other unknowns."""
+"""Perturbed copies: number of rounds, of sixbars, and of copies of each; standard deviation of the change in logarithms
+of lengths; standard deviation of the logarithm of this deviation; and share of it for other unknowns."""
 
 MAX_FORM_CANDIDATES, MAX_FITTED, MAX_DRIVEN, MAX_DRIVEN_CONSTRAINED = 8, 32, 16, 32
 """Number of sixbars of a form that remain candidates (more if there are few forms); over all forms, maximum number
@@ -195,7 +195,7 @@ def _find_candidates(
 
 
 def _select_best(fits: SixbarFits, count: int) -> NDArray[np.int64]:
-    """Return the rows of the nearest fits that close."""
+    """Return the rows of the nearest fits that can be assembled."""
     order = np.argsort(fits.cost, kind="stable")[:count]
     return np.asarray(order[np.isfinite(fits.cost[order])])
 
@@ -203,7 +203,7 @@ def _select_best(fits: SixbarFits, count: int) -> NDArray[np.int64]:
 def _perturb_best(
     fits: SixbarFits, points: Complex, weights: Real, setting: Real, rng: np.random.Generator
 ) -> SixbarFits:
-    """Descend from changed copies of the best; return the old fits and the new ends."""
+    """Descend from perturbed copies of the best fits; return the old fits and the new ones."""
     rows = np.repeat(_select_best(fits, MAX_KICKED), COPY_COUNT)
     if not len(rows):
         return fits
@@ -226,7 +226,7 @@ NON_LOG_UNKNOWNS = [0, 1, 2, 7, 8, 9, 10, 13, 14]
 def _fit_candidates(
     problem: PathProblem, target: TargetCurve, places: Real, begun: Sequence[_Candidate], setting: Real
 ) -> list[_Candidate]:
-    """Fit the best to the points under all constraints; the ones that fail follow the feasible ones."""
+    """Fit the best candidates to the points under all constraints; failed ones follow the feasible ones."""
     count = len(target.points)
     # Only a dense closed polyline defines the curve between its points.
     dense = problem.is_fitted and problem.closed and count >= MIN_POLYLINE_POINTS

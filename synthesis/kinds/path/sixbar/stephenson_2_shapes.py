@@ -108,8 +108,10 @@ def place_sixbars(
     family: int, carrier: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool, x: Real,
     signs: Real, at: Real, marks: Complex,
 ) -> None:  # fmt: skip
-    """Put every sixbar on the target in place; return angles of link 3 at its points, and the joints at the first, in
-    ``marks``."""
+    """Move every sixbar onto the target, in place.
+
+    ``at`` receives the angles of link 3 at the target's points, ``marks`` the joints at the first point.
+    """
     lengths, chart = np.empty(4), np.zeros((4, 4))
     curve, theta = np.empty(SWEEP_STEP_COUNT, np.complex128), np.empty(SWEEP_STEP_COUNT)
     middle, places = target.mean(), np.empty(GROUND_JOINT_COUNT, np.complex128)

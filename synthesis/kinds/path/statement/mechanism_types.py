@@ -46,7 +46,7 @@ TURNING_CLASSES = ("any", "crank_rocker", "double_crank")
 
 
 def list_simple_types(requested: Auto | Sequence[Simple | Sixbar] | None) -> tuple[Simple, ...]:
-    """Return the requested types with one closure, the simplest first; under ``auto`` fourbars alone."""
+    """Return the requested types with one closure, the simplest first; only fourbars for ``auto``."""
     return ("fourbar",) if requested == "auto" else select_requested_types(requested, SIMPLE_TYPES)
 
 

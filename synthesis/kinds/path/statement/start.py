@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from synthesis.kinds.path.problem import PathProblem
 
 MIN_LINK_SHARE = 1e-6
-"""A link shorter than this share of the longest has no length."""
+"""Minimum length of a link, as a share of the longest; a shorter link counts as having no length."""
 
 
 class StartFourbar(Statement):

@@ -1,4 +1,4 @@
-"""Measure how near a fitted linkage is to its target, at the points and between them, and rank linkages by it."""
+"""Ranking of fitted linkages by their distance from the target, at the points and between them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.results.ranking import rank_designs, select_best, sort_designs
 
 EQUAL_ERROR_RATIO, ACCURATE_ERROR_RATIO, ERROR_TOLERANCE = 1.1, 1.001, 1e-9
-"""Errors within these factors count as equal, and quality decides: for the best design, and for the most accurate one.
-Errors below the last value, a share of the points' size, are rounding."""
+"""Factors within which errors count as equal, so that quality decides: in the default order, and in the order by
+accuracy. The last value is the error, as a share of the points' size, that counts as rounding."""
 
 MIN_NEAREST_SHARE = 0.4
-"""A linkage stays a candidate while its error is at most the minimum error over this; constraints may choose among
-them."""
+"""Minimum ratio of the smallest error to that of a linkage which remains a candidate; constraints decide among these.
+"""
 
 FAR_REASON = "far_from_the_curve"
 """Reason for rejecting sound linkages that are dropped because nearer ones exist."""
@@ -25,16 +25,15 @@ TRADE_ERROR_RATIO = 2.0
 """Designs whose error is within this factor of the minimum may be ranked by other criteria."""
 
 SOUND_ANGLE, USABLE_ANGLE, MAX_LINK_RATIO = 30.0, 20.0, 10.0
-"""Transmission angles, degrees, of a sound linkage and of a usable one, and the maximum link ratio of either: without
-such limits in the problem, linkages that satisfy them come first."""
+"""Minimum transmission angles, degrees, of a sound and of a usable linkage, and the maximum link ratio of both. If the
+problem sets no such limits, linkages that satisfy these come first."""
 
 STEP_ROUNDING = 1e-6
-"""Share of a step of nearness that is rounding."""
+"""Allowance for rounding: a share of the width of an error class, and relative to the limits of usability."""
 
 
 def compute_error(design: PathDesign, problem: PathProblem) -> float:
-    """Return a design's error: its rms distance from the points combined with its excursion between them, length
-    units."""
+    """Return a design's error in length units: its RMS distance from the points and its excursion between them."""
     return max(
         ERROR_TOLERANCE * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0)
     )
@@ -52,7 +51,7 @@ def select_near(designs: list[PathDesign], problem: PathProblem) -> list[PathDes
 
 
 def drop_straying(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
-    """Drop the designs that are far from the nearest because of an excursion: those good at the points alone."""
+    """Drop the designs that are near at the points but whose excursion between them makes their error large."""
     least = find_min_error(designs, problem)
     return [
         design
@@ -136,9 +135,10 @@ def classify_usability(design: PathDesign) -> int:
 
 
 def explain_choice(designs: list[PathDesign], problem: PathProblem) -> str:
-    """Explain in a sentence what the first of the ordered designs gives up; empty if nothing.
+    """Explain in a sentence why the first design is not the nearest one; empty if they are equally near.
 
-    Its defects are described for all kinds alike: see :mod:`synthesis.results.practicality`.
+    Other defects of the design are described in the same way for all kinds: see
+    :mod:`synthesis.results.practicality`.
     """
     if not designs or not is_usable_preferred(problem):
         return ""

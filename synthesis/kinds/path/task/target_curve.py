@@ -1,4 +1,4 @@
-"""Represent the target curve for shape comparison and fits: equal steps along it, and crank angles at its points."""
+"""The target curve for shape comparison and fits: equal steps along it, and crank angles at its points."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ SHAPE_POINT_COUNT = 48
 """Number of points of a shape: descriptors up to the 24th, far more than coupler curves have."""
 
 MIN_DEFINING_POINTS, FILL_WEIGHT = 12, 0.1
-"""Targets with fewer points than this define a curve poorly. If the curve is to be matched, the lines between the
-points count too, with this share of the weight; if the points are to be met, a smooth curve is laid through them."""
+"""Minimum number of points that define a curve well, and share of the weight of the lines between fewer points. These
+lines count if the curve is to be matched; if the points are to be met, a smooth curve through them is used."""
 
 MIN_POLYLINE_POINTS = 24
 """Number of points from which on their polyline represents the curve between them."""
 
 SMOOTH_POINT_COUNT = 240
-"""Number of points of that smooth curve."""
+"""Number of points of the smooth curve through few points."""
 
 
 class TargetCurve:

@@ -1,7 +1,7 @@
-"""Drive the cognates of an answer past the same points, measure them, and compare them with the design.
+"""Cognates of a design, driven past the same points, measured, and compared with the design.
 
-Each fourbar has two cognates that trace its curve (:mod:`kinematics.linkage.fourbar.cognates`). They stand on other
-pivots, may be of another Grashof type, and one may pass a toggle between points that another reaches without one.
+Each fourbar has two cognates that trace its curve (:mod:`kinematics.linkage.fourbar.cognates`). They have other fixed
+pivots, may be of another Grashof type, and one may pass a toggle between points that another reaches without a toggle.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import DrivenFourbar, FourbarConfiguration, build_driven_fourbar, build_fourbar
 
 MIN_INPUT_SEPARATION = 1e-9
-"""Separation of inputs, radians, below which two targets are met at one place."""
+"""Separation of inputs, radians, below which two targets are met at the same input."""
 
 ANGLE_TOLERANCE = 0.05
 """Transmission angles that differ by less than this, in degrees, count as equal."""
@@ -86,8 +86,7 @@ def _measure_cognate(
 
 
 def _describe_choice(design: PathDesign, driven: list[PathCognate]) -> str:
-    """Compare transmission angles and full rotation of the design and its cognates, and name defects of the
-    cognates."""
+    """Describe how the design and its cognates compare in transmission angle, full rotation and defects."""
     ours = design.metrics.min_transmission_angle
     parts = [f"This {_format_motion(design.metrics.grashof)} has a minimum transmission angle of {ours:.1f}°."]
     for cognate in driven:

@@ -1,13 +1,12 @@
-"""Measure how far a traced curve strays from the course of the points that it must draw, over the whole used range.
+"""Deviation of a traced curve from the course of the points that it must draw, over the whole used range.
 
-A linkage that passes all points may whip out between two of them. Over the used range (a full turn for a closed curve,
+A linkage that passes all points may stray far between two of them. Over the used range (a full turn for a closed curve,
 from the first point to the last for an open one) every place on the traced curve is compared with the course:
 
 * with the straight lines through the points, which gives the distance;
 * with these lines, widened by the bulge that a curve may have between points (:data:`BULGE_RATIO` of their lengths) and
-  by
-  the miss at the points themselves, which gives the excursion: the part that the points do not justify;
-* where points have tolerances, with the lines, each as wide as the smooth curve through the points bulges from it.
+  by the error at the points themselves, which gives the excursion: the part that the points do not justify;
+* if points have tolerances, with the lines, each widened by the bulge of the smooth curve through the points.
 """
 
 from __future__ import annotations
@@ -27,8 +26,8 @@ CURVE_STEP_COUNT = 1440
 """Number of input steps at which the curve is compared with the target: a quarter of a degree for a full turn."""
 
 BULGE_RATIO = 0.25
-"""A curve may bulge between two points by this share of their distance, as an arc of a hundred degrees does. Anything
-beyond is an excursion that the points do not show."""
+"""Maximum bulge of a curve between two points, as a share of their distance: that of an arc of a hundred degrees. A
+deviation beyond it is an excursion that the points do not show."""
 
 MAX_STEP_RATIO, MAX_BISECTIONS = 0.01, 40
 """Longest step between neighbouring places, as a share of the curve's size, and the maximum number of bisections of an
@@ -40,8 +39,7 @@ number of passes, each sixteen times finer, around the maximum."""
 
 
 class CurveDeviation(NamedTuple):
-    """Deviation of a traced curve from the lines through the points: maximum distance, and excursion beyond the
-    allowance."""
+    """Deviation of a traced curve from the lines through the points: maximum distance, and maximum excursion."""
 
     curve_distance: float
     excursion: float
@@ -56,16 +54,18 @@ class Course(NamedTuple):
 
 
 def build_course(points: Complex, closed: bool, missed: float) -> Course:
-    """Return the lines through points that are missed by ``missed``; they may bulge by :data:`BULGE_RATIO`. Closed, or
-    a chain."""
+    """Return the lines through points, closed or as an open chain, with their permitted deviations.
+
+    A deviation consists of the bulge (:data:`BULGE_RATIO`) and of ``missed``, the distance by which the points are
+    missed.
+    """
     starts = points if closed else points[:-1]
     sides = (np.roll(points, -1) if closed else points[1:]) - starts
     return Course(starts, sides, missed + BULGE_RATIO * np.abs(sides))
 
 
 def build_tolerated_course(points: Complex, closed: bool, tolerances: Real) -> tuple[Course, Real]:
-    """Return the lines through points, with the bulge of the smooth curve through them allowed, and the lines'
-    tolerances.
+    """Return the lines through points, with the bulge of the smooth curve through them, and the lines' tolerances.
 
     The smooth curve is the cubic spline over the chords; no bulge exceeds :data:`BULGE_RATIO`. A line has the larger of
     the tolerances at its two ends.
@@ -90,13 +90,12 @@ def build_tolerated_course(points: Complex, closed: bool, tolerances: Real) -> t
 def measure_excursion(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, missed: float
 ) -> CurveDeviation:
-    """Return the maximum distance of a point from the polygon through the points, and its excursion, between two
-    inputs.
+    """Return the maximum distance of a moving point from the lines through given points, and its excursion.
 
     Parameters
     ----------
     place : callable
-        Where the point is at inputs (n,), shape (n,); NaN where there is no position.
+        Position of the moving point at inputs (n,), shape (n,); NaN where there is none.
     used : tuple of float
         The first and the last input that is used.
     points : ndarray, shape (n,)
@@ -108,7 +107,7 @@ def measure_excursion(
 
     Returns
     -------
-    Astray
+    CurveDeviation
         Both in the unit of the points.
     """
     inputs, places = sample_curve(place, *used)
@@ -123,7 +122,7 @@ def measure_excursion(
 
     at, farthest = refine_maximum(0, off)
     _, excursion = refine_maximum(1, beyond)
-    # The place of maximum distance is often that of the maximum excursion too, between two samples of the latter.
+    # The maximum distance often occurs at the maximum excursion, so that this input is evaluated for both.
     _, there = measure_distances(place(np.array([at])), course)
     return CurveDeviation(farthest, max(excursion, float(there[0])))
 
@@ -131,11 +130,11 @@ def measure_excursion(
 def compute_two_way_rms(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, misses: Real
 ) -> float:
-    """Return the root mean square of the points' distances from a curve and of the curve's from the lines through the
-    points.
+    """Return the RMS distance between points and a curve, in both directions.
 
-    Parameters are those of :func:`measure_excursion`, and the points' distances. The curve is weighted by its length;
-    both directions count equally.
+    It combines the points' distances from the curve, ``misses``, and the curve's distances from the lines through the
+    points. The curve is weighted by its length, and both directions count equally. The other parameters are those of
+    :func:`measure_excursion`.
     """
     _, places = sample_curve(place, *used)
     off, _ = measure_distances(places, build_course(points, closed, 0.0))
@@ -166,10 +165,9 @@ def compute_tolerance_used(
 
 
 def sample_curve(place: Callable[[Real], Complex], low: float, high: float) -> tuple[Real, Complex]:
-    """Return increasing inputs and the places there, refined until no step exceeds :data:`MAX_STEP_RATIO` of the
-    curve's size.
+    """Return increasing inputs and the positions at them, NaN where the linkage has none.
 
-    NaN where the linkage has no position.
+    Inputs are added until no step exceeds :data:`MAX_STEP_RATIO` of the curve's size.
     """
     inputs = np.linspace(low, high, CURVE_STEP_COUNT + 1)
     places = place(inputs)
@@ -190,7 +188,7 @@ def sample_curve(place: Callable[[Real], Complex], low: float, high: float) -> t
 def measure_distances(places: Complex, course: Course) -> tuple[Real, Real]:
     """Return the distances of places from the lines of a course, and their excess over the allowance, at least 0.
 
-    The excess is the minimum over all lines. NaN where there is no place.
+    The excess is the minimum over all lines. Both are NaN where a place is NaN.
     """
     unit = np.ones(len(course.starts))
     off = _compute_tolerance_shares(places, course.starts, course.sides, np.zeros(len(course.starts)), unit)
@@ -209,8 +207,10 @@ def _measure_distance(place: complex, start: complex, side: complex) -> float:
 
 
 def _measure_bulges(smooth: CubicSpline, begin: Real, lengths: Real, lines: Course) -> Real:
-    """Return the maximum distance of the smooth curve from each line that it spans; ``begin`` is its parameter at
-    each."""
+    """Return the maximum distance of the smooth curve from each line that it spans.
+
+    ``begin`` contains the curve's parameter at the start of each line.
+    """
     low, high = np.zeros(len(begin)), np.ones(len(begin))
     found = np.zeros(len(begin))
     for _ in range(SMOOTH_PASS_COUNT):

@@ -51,7 +51,7 @@ from synthesis.verification.measures import (
 )
 
 ROUNDING_SLACK = 1e-9
-"""Coordinates outside a required interval by this share of its larger end count as inside: rounding."""
+"""Distance from a required interval, as a share of its larger end, that counts as rounding."""
 
 
 class _Motion(NamedTuple):
@@ -254,8 +254,7 @@ def _compute_motion(linkage: Fourbar, passed: Passages) -> _Motion:
 
 
 def _check_path_constraints(problem: PathProblem, measures: Measures, pivots: list[complex]) -> list[Check]:
-    """Check the constraints specific to path generation: places of pivots, a closed path, lengths allowed for a
-    curve."""
+    """Check the constraints specific to path generation: pivots, a closed path, and the lengths for a curve."""
     checks = []
     limits = problem.constraints
     if limits.input_pivot_region is not None:

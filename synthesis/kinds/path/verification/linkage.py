@@ -89,7 +89,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
         full_rotation=here.full,
         used=used,
     )
-    # P may lie anywhere and is no pivot.
+    # P is not a pivot, so regions do not apply to it.
     still = {*mechanism.links[GROUND], BODY_POINT}
     moving = [complex(places[0]) for name, places in joints.items() if name not in still]
     at_points = AtPoints(np.degrees(inputs), misses, True, list_fixed_pivots(mechanism), moving)

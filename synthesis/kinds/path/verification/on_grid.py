@@ -1,5 +1,4 @@
-"""Verify linkages that pass points only within rounding, those made on a grid, even if the problem requires
-exactness."""
+"""Verification of linkages on a grid, whose rounded dimensions miss points even if the problem requires exactness."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""Find where a driven fourbar's coupler point passes the required points, or comes nearest to them, in three ways.
+"""Passages of a driven fourbar's coupler point at, or nearest to, the required points, found in three ways.
 
 *At the points*, if they are to be met exactly and timing is free: the pin A lies on the crank's circle and at the
-coupler point's distance from the required point; of these two places the output link usually excludes one. They
-give the input angles to which the linkage is driven, in both assemblies. A curve may pass a point twice: the passage on
-the first target's circuit counts.
+coupler point's distance from the required point. The output link usually excludes one of these two positions. They give
+the input angles to which the linkage is driven, in both assemblies. A curve may pass a point twice: the passage on the
+first target's circuit counts.
 
-*At the crank angles*, if these are prescribed: the first is the reference's, the others follow it.
+*At the crank angles*, if these are prescribed: the first is that of the reference, the others follow it.
 
 *Nearest, in order*, if points are fitted and timing is free: the input is searched at which P comes nearest to each
 point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
@@ -27,19 +27,20 @@ from kinematics.linkage.fourbar import find_toggle_angles, has_full_rotation, is
 from synthesis.model.linkage.conversion import DrivenFourbar
 
 CIRCUIT_TOLERANCE = 1e-9
-"""Distance, as a share of the task's size, up to which places count as equal when a circuit is chosen."""
+"""Distance of positions, as a share of the task's size, up to which they count as equal when a circuit is chosen."""
 
 ROUNDING_MISS = 1e-11
-"""Misses above this share of the task's size may stem from the arc cosine by which inputs are found."""
+"""Distance from a point, as a share of the task's size, above which inputs are polished: it may result from the arc
+cosine by which they are found."""
 
 POLISH_STEP_COUNT, DIFFERENCE_STEP = 4, 1e-7
-"""Number of Newton steps that polish such inputs, and the difference, radians, over which their slope is measured."""
+"""Number of Newton steps that polish inputs, and finite-difference step of the slope, radians."""
 
 GRID_STEP_COUNT = 360
 """Number of inputs of the first pass in a full turn: one degree."""
 
 START_STRIDE = 5
-"""A crank's first input is tried at every fifth input of the grid: the refinements move it by more than that."""
+"""Number of grid inputs per trial of a crank's first input; refinement can move an input by more than that."""
 
 REFINEMENT_SAMPLE_COUNT = 17
 """Number of inputs for each target in one refinement, over the two steps around the previous optimum."""
@@ -56,7 +57,7 @@ UNREACHABLE_SQUARE = 1e30
 
 
 class Passages(NamedTuple):
-    """A linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses.
+    """A linkage at its passages: input angles, assembly signs, joints A, B and P, and the distances from the points.
 
     ``run`` is true if the angles are one run of the input from the first target, not angles modulo full turns.
     """
@@ -71,8 +72,10 @@ class Passages(NamedTuple):
 
 
 def locate_at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Return where P passes each point, on the reference's circuit if possible; None if no crank angle brings it
-    near."""
+    """Return the passages of P at the points, on the reference's circuit if possible.
+
+    Returns None if P is near some point at no crank angle.
+    """
     linkage = fourbar.linkage
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
     if not reference.valid:
@@ -137,10 +140,9 @@ def _refine_inputs(fourbar: DrivenFourbar, points: Complex, inputs: Real, signs:
 
 
 def locate_at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: bool) -> Passages | None:
-    """Return where P is after the input has turned by ``turns`` (radians) from its reference; None if it cannot turn
-    so.
+    """Return the positions of P after input rotations ``turns``, radians, from the reference; None if impossible.
 
-    With ``both`` a point that the other assembly meets, and the reference's does not, counts as met there.
+    With ``both``, a point that only the other assembly meets counts as met in that assembly.
     """
     angles = fourbar.reference + turns
     own = _drive_at_angles(fourbar, points, angles, run=True)
@@ -158,7 +160,7 @@ def locate_at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, bo
 
 
 def locate_in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Return where P comes nearest to the points one after the other, the input turning in one direction on its branch.
+    """Return the passages nearest to the points in order, with the input turning in one direction on its branch.
 
     The sum of squared distances within one turn of the input is minimal.
     """
@@ -171,7 +173,7 @@ def locate_in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
 
 
 def locate_nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Return where P comes nearest to each point, in any order, on the reference's branch."""
+    """Return the passages nearest to the points, in any order, on the reference's branch."""
     low, high = _get_branch_range(fourbar)
     step = (high - low) / GRID_STEP_COUNT
     grid = np.linspace(low, high, GRID_STEP_COUNT + 1)
@@ -251,8 +253,9 @@ def find_ordered_run(
     if period is None:
         directions = [(way, *_solve_open_grid(ways.copy())) for way, ways in ((1.0, squares), (-1.0, squares[:, ::-1]))]
     else:
-        # Every run lies within STRIDE + 1 steps of one that begins at a trial start of the grid, so refinement lowers
-        # the root of a sum of squares by at most ``moved``. A direction that is above the other by more is dropped.
+        # Every run lies within START_STRIDE + 1 steps of one that begins at a trial start of the grid, so refinement
+        # lowers the root of a sum of squares by at most ``moved``. A direction that exceeds the other by more than
+        # that is dropped.
         moved = math.sqrt(len(points)) * (START_STRIDE + 1) * float(np.abs(np.diff(path)).max())
         columns, least = _solve_closed_grid(squares[:, :-1].copy(), math.inf)
         back = _solve_closed_grid(squares[:, :0:-1].copy(), (math.sqrt(least) + moved) ** 2)
@@ -334,8 +337,9 @@ def _solve_open_grid(squares: Real) -> tuple[Integers, float]:
 
 @njit(cache=True, nogil=True)
 def _solve_closed_grid(squares: Real, bound: float) -> tuple[Integers, float]:
-    """Do the same for a closed curve: columns continue beyond the last with the first, over one turn from the start.
+    """Return the columns with the minimum sum for a closed curve, and that sum.
 
+    Columns continue cyclically over one turn from the start.
     The sum is infinite if none is below ``bound``.
     """
     rows, columns = squares.shape
@@ -353,7 +357,7 @@ def _solve_closed_grid(squares: Real, bound: float) -> tuple[Integers, float]:
 
 @njit(cache=True, nogil=True)
 def _choose_values(squares: Real, values: Real, longest: float) -> Real:
-    """Choose one value per row, ascending in each row and not falling from row to row, with the minimum sum.
+    """Choose one of the ascending values of each row, not decreasing from row to row, with the minimum sum of squares.
 
     The last is at most ``longest`` after the first.
     """

@@ -1,4 +1,4 @@
-"""Measure a finished linkage in its stance by dense driving: the band in which P stays, and the evenness of its speed.
+"""Measurement of a finished linkage in its stance by dense driving: the band of P's heights, and the speed of P.
 
 P is followed between the inputs at which it passes the stance's first point and its last. Heights of P are measured
 across the line through these two required points; maximum minus minimum is the flatness. The speed of P along the line,
