@@ -61,8 +61,8 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     page = studio.page
     # The lid: shut, half open, open. The first two rows stand there; all are put where the hand puts them.
     page.select_option("#kind", "motion")
-    page.locator("#sketch").get_by_role("button", name="Farther").click()
-    page.locator("#sketch").get_by_role("button", name="Farther").click()
+    page.locator("#sketch").get_by_role("button", name="Zoom out").click()
+    page.locator("#sketch").get_by_role("button", name="Zoom out").click()
     hand = Hand(page)
     grips = [f'#sketch [data-grip="position{k}"]' for k in range(3)]
     for grip, place in zip(grips, ((0.40, 0.55), (0.50, 0.62), (0.60, 0.58)), strict=True):

@@ -27,7 +27,7 @@ class Pointer:
     def __init__(self, page, away=2):
         self.page = page
         for _ in range(away):
-            page.locator("#sketch").get_by_role("button", name="Farther").click()
+            page.locator("#sketch").get_by_role("button", name="Zoom out").click()
         (x0, y0), (x1, y1) = (self._middle(name) for name in ("1", "3"))
         first, last = (stated(page)["positions"][k] for k in (0, 2))
         self.scale = (y1 - y0) / (first["y"] - last["y"])
@@ -262,7 +262,7 @@ def test_the_view_is_led(studio):
     page = studio.page
     state(page, LID)
     before = Pointer(page, away=0)
-    page.get_by_role("button", name="Farther").click()
+    page.get_by_role("button", name="Zoom out").click()
     farther = Pointer(page, away=0)
     assert farther.scale == pytest.approx(before.scale / 1.5, rel=0.02)
     farther.drag((-250, -50), (-150, -50))

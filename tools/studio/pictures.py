@@ -217,7 +217,7 @@ def _sweep(page: Page) -> None:
     page.check("#sweep")
     page.wait_for_selector(".moving .sweep .swept")
     page.get_by_label("Other circuit").uncheck()
-    page.locator("#watch").get_by_role("button", name="Nearer", exact=True).click()
+    page.locator("#watch").get_by_role("button", name="Zoom in", exact=True).click()
     _led(page, 0.2)
 
 

@@ -180,7 +180,9 @@ class RunningGear(Answer):
     working_pitch_diameter: float
     base_diameter: float
     tip_diameter: float
-    root_diameter: float = Field(description="Diameter of the root circle, which the rack cuts, or the cutter of a ring.")
+    root_diameter: float = Field(
+        description="Diameter of the root circle, which the rack cuts, or the cutter of a ring."
+    )
     form_diameter: float = Field(
         description="Diameter at which the involute ends; for an undercut gear where its fillet crosses the flank."
     )
