@@ -64,7 +64,7 @@ def report_manufacture(
     remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
     clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
     play = compute_plays(made, clearance) if clearance > 0.0 else []
-    # None does not mean that there is no play: within its clearances the linkage can reach a toggle.
+    # None means that the clearances let the linkage reach a toggle, not that its play is zero.
     if play is None:
         remark = "within the clearances of its pins the linkage reaches a toggle at a target"
     allocated: list[Allocation] = []

@@ -193,7 +193,7 @@ def _find_meetings(mechanism: Mechanism, parts: Parts, below: set[int], low: flo
 class _SideChoice:
     """Best planes of both sides for one choice of bases for the shafts inside.
 
-    ``hung`` tells for each of these shafts whether it hangs from the second base.
+    ``hung`` is true for each of these shafts that hangs from the second base.
     """
 
     def __init__(self, parts: Parts, below: set[int], hung: dict[int, bool], met: _Met) -> None:

@@ -81,7 +81,7 @@ def _compute_opposite_angle(part: complex) -> float:
 def compute_peak(problem: EngineProblem, speed: float, *, turning: bool, share: float) -> float:
     """Compute the peak shaking force of one cylinder whose counterweight carries a share of m_B.
 
-    ``turning`` tells whether all rotating masses are balanced, too (Norton, Sec. 13.10).
+    ``turning`` is true if all rotating masses are balanced, too (Norton, Sec. 13.10).
     """
     degrees = 360.0 * np.arange(POSITION_COUNT) / POSITION_COUNT
     return _compute_peak_of_force(

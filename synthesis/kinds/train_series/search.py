@@ -4,7 +4,7 @@ The ratio of a series is the product of those of its units. The products of some
 product p of the others, those that are near enough lie around T/p, where T is the target, and are found by bisection.
 Errors in double precision select the series that may matter, slightly widened; these are sorted in exact arithmetic.
 
-Equal units may change places. Of the resulting series, only the one with entries in non-increasing order counts.
+Equal units may change places. Only the series with its entries in non-increasing order is examined.
 """
 
 from __future__ import annotations

@@ -258,7 +258,7 @@ def _with_conditions(block: Block, weights: Real, measure: _Measure) -> _Measure
 def _adjust_conditions(block: Block, weights: Real, measure: _Measure) -> tuple[Real, bool]:
     """Adjust the conditions' multipliers by the smallest change for which λ(0) vanishes, as free start states require.
 
-    Conditions above the order q get the multiplier zero, which drops them. The second returned value tells whether
+    Conditions above the order q get the multiplier zero, which drops them. The second returned value is true if
     λ(0) vanishes; if it does not, the multipliers prove nothing.
     """
     order = measure.atoms.shape[1]

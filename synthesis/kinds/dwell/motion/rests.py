@@ -175,14 +175,14 @@ def find_rests(
 
 
 def find_placed_rests(
-    turn: OutputCycle, wanted: Sequence[RequestedDwell], allowed: float, way: tuple[float, float]
+    turn: OutputCycle, requested: Sequence[RequestedDwell], allowed: float, way: tuple[float, float]
 ) -> list[MeasuredRest]:
     """Find the rests of a turn nearest to given places of the range, in the order of the requests.
 
     Parameters
     ----------
     turn : OutputCycle
-    wanted : sequence of RequestedDwell
+    requested : sequence of RequestedDwell
         The crank's rotation in each rest, degrees, and its place.
     allowed, way
         As for :func:`find_rests`.
@@ -195,7 +195,7 @@ def find_placed_rests(
     """
     low, high = way
     found = []
-    for angle, place in wanted:
+    for angle, place in requested:
         wide = math.radians(angle)
         jitter, mean = _measure_windows(turn, wide)
         share = (mean - low) / (high - low)

@@ -198,7 +198,7 @@ def _drive_to_last(
     joints: Complex, c1: int, c2: int, lengths: Real, point: complex, last: float, first_side: float,
     second_side: float, flattest: float, limits: Real,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """Drive from the first position to the last, and look for toggles between the targets.
+    """Drive from the first position to the last, and find toggles between the targets.
 
     Returns
     -------
