@@ -9,6 +9,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
+from kinematics.message import make_sentence
 from synthesis.model.error_path import select_given_steps
 
 MAX_FAULTS = 20
@@ -23,15 +24,6 @@ MAX_LISTED_FIELDS = 8
 
 Models = Mapping[str, object]
 """Types that the parts of a request are validated against: `body`, `query`."""
-
-
-def make_sentence(text: str) -> str:
-    """Format a detail as a sentence, with a capital and a full stop.
-
-    >>> make_sentence("equal to position 0")
-    'Equal to position 0.'
-    """
-    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
 
 
 def format_pointer(location: Iterable[str | int]) -> str:

@@ -11,7 +11,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.error_messages import describe_faults, make_sentence
+from kinematics.message import make_sentence
+from service.error_messages import describe_faults
 from synthesis.model.problem import ProblemBase
 from synthesis.registry import KINDS
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pydantic import ValidationError
 from pydantic_core import to_json
 
+from kinematics.message import make_sentence
 from service.answers.numerical import refuse_numerical_errors
-from service.error_messages import make_sentence
 from service.refusals import refuse_invalid_body, refuse_invalid_mechanism, refuse_invalid_request
 
 

@@ -7,9 +7,9 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import to_json
 
+from kinematics.message import make_sentence
 from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
-from service.error_messages import make_sentence
 from service.refusals import Refusal, refuse_invalid_body, refuse_invalid_request
 from synthesis.model.json_object import JsonObject
 

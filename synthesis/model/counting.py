@@ -2,23 +2,9 @@
 
 from __future__ import annotations
 
-MIN_GROUPED = 10_000
-"""Smallest integer whose digits are grouped in threes."""
+from kinematics.message import format_integer
 
-THIN_SPACE = "\u202f"
-"""Narrow no-break space between groups of digits (ISO 80000-1, 7.3.1). It prevents a line break, and no language uses
-it as a decimal sign."""
-
-
-def format_integer(number: int) -> str:
-    """Format an integer for a sentence.
-
-    >>> format_integer(9216), format_integer(-14002477).replace(THIN_SPACE, " ")
-    ('9216', '−14 002 477')
-    """
-    digits = f"{number:,}".replace(",", THIN_SPACE) if abs(number) >= MIN_GROUPED else str(number)
-    # Use a true minus sign, as in printed tables.
-    return digits.replace("-", "−")
+__all__ = ["choose_word", "format_count", "format_integer"]
 
 
 def choose_word(number: int, one: str, many: str) -> str:

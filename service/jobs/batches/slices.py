@@ -232,7 +232,7 @@ class SliceSolver:
 
     def _solve_sample(self, prepared: _PreparedSample) -> str | faults.Fault:
         """Return the answer as JSON, or the fault."""
-        from service.error_messages import make_sentence
+        from kinematics.message import make_sentence
         from service.requests import check_consistency
         from synthesis import dispatch
         from synthesis.model.problem import ContradictionError
