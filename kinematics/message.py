@@ -1,15 +1,16 @@
 """Messages for users: an id and values, with the text of each language in catalogues.
 
 A package that writes messages has the catalogues ``messages.en.ftl`` and ``messages.de.ftl`` in the Fluent format
-(https://projectfluent.org). The ids of its messages begin with the name of its folder. :func:`compose` writes the
-English text of a message:
+(https://projectfluent.org). The ids of its messages begin with the name of its folder. :func:`compose` writes the text
+of a message:
 
     compose("path-too-few-points", given=3, least=5)
 
 The result is a plain string, which can be stored in any field. This module remembers the id and the values of the texts
 that it has composed last, so :func:`find_message` finds the message of a text that has passed through code which knows
 strings only, such as validators and exceptions. Messages are values: they can be sent to other processes, stored, and
-written in another language by :func:`translate`.
+written in another language by :func:`translate`. A request is answered in the language of :func:`use_language`; what is
+stored is composed in English.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from __future__ import annotations
 import os
 import re
 from collections import OrderedDict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -71,10 +74,26 @@ class UnknownMessage(LookupError):
 
 
 _remembered: OrderedDict[str, Message] = OrderedDict()
+_language: ContextVar[str] = ContextVar("language", default=SOURCE_LANGUAGE)
+
+
+@contextmanager
+def use_language(language: str) -> Iterator[None]:
+    """Compose messages in a language, one of :data:`LANGUAGES`, within the context: this task or thread only."""
+    token = _language.set(language)
+    try:
+        yield
+    finally:
+        _language.reset(token)
+
+
+def get_language() -> str:
+    """Return the language in which messages are composed here."""
+    return _language.get()
 
 
 def compose(message_id: str, /, **values: str | int) -> str:
-    """Return the English text of a message and remember the message.
+    """Return the text of a message in the language of this context, and remember the message.
 
     Parameters
     ----------
@@ -108,8 +127,8 @@ def make_sentence(text: str) -> str:
 
 
 def remember(message: Message) -> str:
-    """Return the English text of a message, for which :func:`find_message` returns the message from now on."""
-    text = translate(message, SOURCE_LANGUAGE)
+    """Return the text of a message, for which :func:`find_message` returns the message from now on."""
+    text = translate(message, get_language())
     _remembered[text] = message
     _remembered.move_to_end(text)
     while len(_remembered) > MAX_REMEMBERED:

@@ -11,6 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from kinematics.message import Message, find_message, remember
 from service.error_messages import MAX_FAULTS, Models, describe_faults
 from synthesis.model.counting import format_count
 
@@ -45,10 +46,12 @@ class Refusal(Exception):
         self.defect = defect
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the fields: the default would call the constructor with the detail alone."""
+        """Pickle the fields and the messages of the texts: the default would call the constructor with the detail."""
         headers = None if self.headers is None else dict(self.headers)
         fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
-        return _restore_refusal, (self.status, *fields)
+        texts = [self.title, self.detail, *(text for _, text in self.errors)]
+        messages = [message for text in texts if (message := find_message(text)) is not None]
+        return _restore_refusal, (self.status, *fields, messages)
 
 
 def _restore_refusal(
@@ -59,7 +62,10 @@ def _restore_refusal(
     errors: FieldFaults,
     headers: dict[str, str] | None,
     defect: str | None,
+    messages: Sequence[Message],
 ) -> Refusal:
+    for message in messages:
+        remember(message)
     name = type_.removeprefix("/problems/")
     return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
 

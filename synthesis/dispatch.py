@@ -11,6 +11,7 @@ from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import AnyKind, Progress, scale_progress
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
+from synthesis.model.text_messages import list_messages
 from synthesis.nearest_miss import Relaxation, find_nearest_miss
 from synthesis.registry import KINDS
 from synthesis.results.forces import report_unknown_forces
@@ -76,7 +77,7 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
     if isinstance(problem, LinkageProblem):
         result = _finish_linkages(problem, result, kind)
     told(1.0, "verified")
-    return result
+    return result.model_copy(update={"messages": list_messages(result)})
 
 
 def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) -> AnyResult:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from service.error_messages import MAX_FAULTS
+from synthesis.model.text_messages import list_messages
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,7 @@ class Fault:
             del details["errors"]
         else:
             details["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
+        details["messages"] = [message.model_dump() for message in list_messages(details)]
         return json.dumps(details)
 
 

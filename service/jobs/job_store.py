@@ -18,6 +18,7 @@ from ulid import ULID
 
 from service.jobs.batches.reading import load_sample, load_samples
 from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
+from service.jobs.store.progress_message import write_progress
 from service.jobs.store.schema import (
     QUEUED_CONDITION,
     AnyRow,
@@ -64,8 +65,6 @@ _MAX_CONCURRENT_INSERTS = 500
 
 _NO_LIMIT = 1 << 30
 """Limit that stands for no limit: no queue gets this long."""
-
-_MAX_MESSAGE_LENGTH = 200  # the width of its column
 
 
 class JobStore:
@@ -224,7 +223,7 @@ class JobStore:
             .where(jobs.c.id == job_id, jobs.c.attempt == attempt, jobs.c.status == Status.RUNNING)
             .values(
                 progress_fraction=min(max(fraction, 0.0), 1.0),
-                progress_message=message[:_MAX_MESSAGE_LENGTH],
+                progress_message=write_progress(message),
                 revision=jobs.c.revision + 1,
             )
         )

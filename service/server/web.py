@@ -14,6 +14,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp
 
 from service.api.http.cached_representation import MIN_PACKED_BYTES
+from service.api.http.language import AnswerInLanguage
 from service.jobs.executor import Executor
 from service.kernels import KernelsState
 from service.observability.head import HeadAsGet
@@ -50,7 +51,9 @@ class WebServer(uvicorn.Server):
         ImpatientProtocol.metrics = metrics
         super().__init__(
             uvicorn.Config(
-                HeadAsGet(Telemetry(_add_cors(_add_compression(self._app), settings.cors_origins), metrics)),
+                HeadAsGet(
+                    Telemetry(_add_cors(_add_compression(AnswerInLanguage(self._app)), settings.cors_origins), metrics)
+                ),
                 log_config=None,
                 access_log=False,
                 server_header=False,

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE, LENGTH, Dimension, DimensionedModel
+from synthesis.model.text_messages import TextMessage
 
 Point = Annotated[tuple[float, float], LENGTH]
 
@@ -118,6 +119,10 @@ class Result(Answer, Generic[Design]):
     summary: str
     nearest_miss: NearestMiss[Design] | None = Field(
         default=None, description="The nearest miss if no design passed; null otherwise."
+    )
+    messages: list[TextMessage] = Field(
+        default=[],
+        description="Ids and values of the texts in this answer, which clients may compare or translate.",
     )
 
 

@@ -15,7 +15,7 @@ from tests.support.browser.accessibility import violations
 from tests.support.browser.form import OPEN_ALL
 from tests.support.browser.studio import drawn, state
 from tests.support.service.running import until
-from tools.studio.messages import messages, spoken
+from tools.studio.messages import collect_texts, read_messages
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
@@ -78,7 +78,7 @@ def unfolded(page):
 
 def test_every_text_that_is_read_has_been_looked_up(chromium, server):
     emptied(server)
-    made_up = MADE_UP % json.dumps({text: " ".join(f"⟦{word}⟧" for word in text.split()) for text in spoken()})
+    made_up = MADE_UP % json.dumps({text: " ".join(f"⟦{word}⟧" for word in text.split()) for text in collect_texts()})
     studio = Studio(chromium, server.url, before=made_up, locale="de-DE", viewport=dict(DESKTOP))
     page = studio.page
     page.wait_for_selector("#pane-numbers .figures")
@@ -106,7 +106,7 @@ def test_german_is_spoken_with_decimal_commas(open_studio, server):
     studio = open_studio(locale="de-DE", reduced_motion="reduce")
     page = studio.page
     assert page.evaluate("document.documentElement.lang") == "de"
-    english = {text for text, told in messages("de").items() if told != text}
+    english = {text for text, told in read_messages("de").items() if told != text}
     state(page, KINDS["motion"])
     page.evaluate(OPEN_ALL)
     assert english.intersection(page.evaluate(READ)) == set()

@@ -1,7 +1,8 @@
 """Texts of the studio for translation: ``python -m tools.studio.messages de`` lists missing and obsolete messages.
 
-Texts are collected from their sources: those of the page from its modules and its markup, those of the service from the
-kinds of problems, their schemas, and the names of the fields in answers. The key of a message is the English text.
+Texts are collected from their sources: those of the page from its modules and its markup; titles, descriptions and
+names of the service from the kinds of problems and their schemas. The key is the English text. Messages in answers and
+errors are not among them: the service writes these in the language of the request (:mod:`kinematics.message`).
 """
 
 from __future__ import annotations
@@ -31,28 +32,25 @@ _CHECK = re.compile(
 )
 """Pattern of the names of checks, and of the reasons for excluding candidates, in the source of modules."""
 
-_PROGRESS = re.compile(r"\bprogress\(\s*[^\n]*,\s+(f?)\"((?:[^\"{\n]|\{[^}\n]*\})*)\",?\s*\)")
-_VALUE = re.compile(r"\{[^}]*\}")
-
 STATES = ("queued", "running", "succeeded", "failed", "cancelled")
 """States of jobs."""
 
 SHAPES = ("polygon", "rectangle", "circle")
 """Shapes of the areas in a workspace."""
 
-NOT_TOLD = {"type", "skeleton", "profile", "pitch_curve", "program", "outer_wall", "lower_wall", "upper_wall"}
+UNLISTED_PARTS = {"type", "skeleton", "profile", "pitch_curve", "program", "outer_wall", "lower_wall", "upper_wall"}
 """Parts of a mechanism that the page does not list among the dimensions."""
 
 
-def messages(language: str) -> dict[str, str]:
+def read_messages(language: str) -> dict[str, str]:
     """Return the translated messages of a language, by their English texts."""
     read: dict[str, str] = json.loads((STUDIO / "messages" / f"{language}.json").read_text("utf-8"))
     return read
 
 
-def spoken() -> list[str]:
+def collect_texts() -> list[str]:
     """Return all texts to be translated, without duplicates."""
-    return list(dict.fromkeys([*of_the_page(), *of_the_service(), *names(), *progress()]))
+    return list(dict.fromkeys([*page_texts(), *service_texts(), *terms()]))
 
 
 def studio_modules() -> list[Path]:
@@ -60,19 +58,19 @@ def studio_modules() -> list[Path]:
     return [path for path in sorted(STUDIO.rglob("*.js")) if path.parent.name != "vendor"]
 
 
-def of_the_page() -> Iterator[str]:
+def page_texts() -> Iterator[str]:
     """Yield the texts of the page's modules and of its markup."""
     for module in studio_modules():
-        yield from tagged(module.read_text("utf-8"))
+        yield from tagged_texts(module.read_text("utf-8"))
     markup = _Markup()
     markup.feed((STUDIO / "index.html").read_text("utf-8"))
     yield from markup.texts
 
 
-def tagged(source: str) -> Iterator[str]:
+def tagged_texts(source: str) -> Iterator[str]:
     """Yield the message keys of the template literals in a module that have the tag ``t``.
 
-    >>> list(tagged("el(t`Design ${n + 1} of ${`${all}`}`, t`none`)"))
+    >>> list(tagged_texts("el(t`Design ${n + 1} of ${`${all}`}`, t`none`)"))
     ['Design {0} of {1}', 'none']
     """
     for found in _TAG.finditer(source):
@@ -119,9 +117,9 @@ class _Markup(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Collect the attributes of an element that contain text for readers."""
         self.foreign = tag == "noscript" or (self.foreign and tag != "script")
-        told = dict(attrs)
-        if tag not in ("link", "html") and not (tag == "meta" and told.get("name") != "description"):
-            self.texts += [_bare(text) for name in _READ if (text := told.get(name))]
+        attributes = dict(attrs)
+        if tag not in ("link", "html") and not (tag == "meta" and attributes.get("name") != "description"):
+            self.texts += [_bare(text) for name in _READ if (text := attributes.get(name))]
 
     def handle_endtag(self, tag: str) -> None:
         """Resume the collection after an element that was skipped."""
@@ -137,7 +135,7 @@ def _bare(text: str) -> str:
     return " ".join(text.split())
 
 
-def of_the_service() -> Iterator[str]:
+def service_texts() -> Iterator[str]:
     """Yield the titles, one-line texts and descriptions of the kinds of problems, of their examples and fields."""
     for name, kind in KINDS.items():
         yield kind.problem.model_config.get("title") or name
@@ -193,7 +191,7 @@ def _options(schema: dict[str, Any], root: dict[str, Any]) -> list[dict[str, Any
     return [one for option in several for one in _options(option, root)] if several else [schema]
 
 
-def names() -> Iterator[str]:
+def terms() -> Iterator[str]:
     """Yield the names of fields, choices, metrics, checks and dimensions, in the form used within a sentence."""
     found: set[str] = {*STATES, *SHAPES, *KINDS}
     for kind in KINDS:
@@ -240,7 +238,7 @@ def _dimensions(schema: Any, root: dict[str, Any], seen: set[str]) -> set[str]:
         found |= _dimensions(root["$defs"][name], root, seen)
     found |= {str(word) for word in (*schema.get("enum", []), *([schema["const"]] if "const" in schema else []))}
     for field, inner in schema.get("properties", {}).items():
-        if field not in NOT_TOLD:
+        if field not in UNLISTED_PARTS:
             found |= {field} | _dimensions(inner, root, seen)
         elif field == "type":
             found |= _dimensions(inner, root, seen)
@@ -248,13 +246,6 @@ def _dimensions(schema: Any, root: dict[str, Any], seen: set[str]) -> set[str]:
         if key not in ("properties", "enum", "const", "$ref"):
             found |= _dimensions(inner, root, seen)
     return found
-
-
-def progress() -> Iterator[str]:
-    """Yield the progress messages of jobs, with numbered placeholders for their values."""
-    for formatted, text in _PROGRESS.findall(_synthesis()):
-        *before, last = _VALUE.split(text) if formatted else [text]
-        yield "".join(f"{part}{{{k}}}" for k, part in enumerate(before)) + last
 
 
 @cache
@@ -266,8 +257,8 @@ def main() -> None:
     """Print the missing messages of a language as JSON to be filled in, and its messages that are no longer used."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("language", help="as de")
-    here = messages(parser.parse_args().language)
-    said = spoken()
+    here = read_messages(parser.parse_args().language)
+    said = collect_texts()
     print(json.dumps({text: "" for text in said if text not in here}, ensure_ascii=False, indent=2))
     for text in here.keys() - set(said):
         print(f"left over: {text}")

@@ -28,6 +28,7 @@ from service.refusals import (
     refuse_not_found,
 )
 from synthesis.model.json_object import JsonObject
+from synthesis.model.text_messages import TextMessage, list_messages
 
 __all__ = [
     "FieldError",
@@ -86,6 +87,10 @@ class ProblemDetails(BaseModel):
     instance: str = Field(description="Path of the request.", examples=["/v1/jobs"])
     errors: list[FieldError] | None = Field(
         default=None, description=f"At most {MAX_FAULTS} faults of an invalid request, each with its place."
+    )
+    messages: list[TextMessage] = Field(
+        default=[],
+        description="Ids and values of the texts in this object, which clients may compare or translate.",
     )
 
 
@@ -244,6 +249,7 @@ def _build_response(
     }
     if errors:
         content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_FAULTS]]
+    content["messages"] = list_messages(content)
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 

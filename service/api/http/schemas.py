@@ -5,15 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
-from pydantic_core import to_json
+from pydantic_core import from_json, to_json
 
+from kinematics.message import SOURCE_LANGUAGE, get_language
 from service.api.http.problem_details import ProblemDetails
+from service.jobs.store.progress_message import read_progress
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Status
 from service.requests import fill_defaults
 from synthesis.model.answer import Result, optional_field
 from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import Group
+from synthesis.model.text_messages import translate_answer
 from synthesis.registry import KINDS, Problem, get_first_example
 
 if TYPE_CHECKING:
@@ -187,13 +190,24 @@ def describe_job(job: JobSummary) -> JsonObject:
 
 def describe_progress(job: JobSummary) -> JsonObject:
     """Return the progress of a job as :class:`Progress`."""
-    return {"fraction": job.progress_fraction, "message": job.progress_message}
+    return {"fraction": job.progress_fraction, "message": read_progress(job.progress_message)}
 
 
 def dump_job(job: JobRow) -> bytes:
-    """Return a job as :class:`Job` in JSON; result and error are sent as stored, without parsing them."""
+    """Return a job as :class:`Job` in JSON. Result and error are stored in English and sent without parsing them."""
     problem, result, error = fill_defaults(job.kind, job.problem), job.result or "null", job.error or "null"
+    if get_language() != SOURCE_LANGUAGE:
+        result, error = (_translate_stored(answer) for answer in (result, error))
     stored = f'"problem":{problem},"result":{result},"error":{error}'
     if isinstance(job, SampleRow):
         stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
     return to_json(describe_job(job))[:-1] + b"," + stored.encode() + b"}"
+
+
+def _translate_stored(answer: str) -> str:
+    """Return a stored answer or error in the language of the request."""
+    read = from_json(answer)
+    if read is None:
+        return answer
+    translate_answer(read, get_language())
+    return to_json(read).decode()

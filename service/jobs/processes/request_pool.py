@@ -15,6 +15,8 @@ import time
 from collections.abc import Awaitable, Callable
 from typing import Any, Protocol, TypeVar
 
+from kinematics.message import SOURCE_LANGUAGE, get_language
+from service.jobs.processes.request_process import call_in_language
 from service.jobs.processes.request_queue import Call, RequestQueue
 from service.jobs.processes.request_worker import ClientGone, GivenUp, Hand, Limits, ProcessLost, ProcessStart
 
@@ -145,6 +147,8 @@ class RequestPool:
         self, gone: Callable[[], Awaitable[bool]], tenant: str, work: Callable[..., object], args: tuple[object, ...]
     ) -> Any:
         self.begin()
+        if get_language() != SOURCE_LANGUAGE:
+            work, args = call_in_language, (get_language(), work, *args)
         key = hash_call(work, args)
         # Equal requests share one call; the last of them to leave abandons it.
         if key not in self._asked:

@@ -16,6 +16,8 @@ from typing import Literal
 
 import structlog
 
+from kinematics.message import use_language
+
 Message = tuple[Literal["ready", "taken", "compiling", "bytes", "returned", "raised"], object]
 
 READY_MESSAGE: Message = ("ready", None)
@@ -48,6 +50,12 @@ def serve_calls(pipe: Connection, prepare: Callable[..., object], settings: tupl
             return
         pipe.send(TAKEN_MESSAGE)
         _send_answer(pipe, *_call(work, args))
+
+
+def call_in_language(language: str, work: Callable[..., object], *args: object) -> object:
+    """Call a function that composes its messages in a language."""
+    with use_language(language):
+        return work(*args)
 
 
 def read_cpu_seconds(pid: int) -> float:

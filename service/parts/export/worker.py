@@ -8,6 +8,7 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import TypeVar
 
+from kinematics.message import get_language
 from service.jobs.processes.limits import limit_memory, restrict_process
 from service.jobs.processes.request_pool import Limits, PoolMetrics, ProcessStart, RequestPool, hash_call
 from service.jobs.workers.worker import LIBRARIES_MB
@@ -65,7 +66,7 @@ class Workshop:
         Busy, GivenUp, ClientGone, ProcessLost
             See :meth:`service.jobs.processes.request_pool.RequestPool.call`.
         """
-        key = hash_call(work, args)
+        key = hash_call(work, (get_language(), *args))
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]

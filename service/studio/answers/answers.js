@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { DesignChooser } from "./design_chooser.js";
 import { createElement } from "../core/dom.js";
 import { DesignView } from "../design/design.js";
-import { foreignLanguage, groupDigits, formatText, t, term, translate } from "../core/messages.js";
+import { groupDigits, formatText, t, term } from "../core/messages.js";
 import { describeNearMiss } from "./near_misses.js";
 import { DesignStrip } from "./design_strip.js";
 
@@ -43,7 +43,7 @@ export function showAnswer(place, desk, job, state, solve) {
         "p",
         { class: job.status === "failed" ? "error" : "note" },
         job.status === "failed"
-          ? `${translate(job.error?.title ?? "Failed")}: ${translate(job.error?.detail ?? "")}`
+          ? `${job.error?.title ?? t`Failed`}: ${job.error?.detail ?? ""}`
           : t`The job was ${term(job.status)}.`,
       ),
     );
@@ -76,7 +76,7 @@ export function showAnswer(place, desk, job, state, solve) {
       createElement("p", { class: "warn outdated" }, t`Answers to an earlier problem.`),
       count,
       ...describeSearch(search, designs.length, summary),
-      createElement("p", { class: "note summary", lang: foreignLanguage(summary) }, formatText(translate(summary))),
+      createElement("p", { class: "note summary" }, formatText(summary)),
     ),
     row.node,
   );
@@ -91,7 +91,7 @@ export function showAnswer(place, desk, job, state, solve) {
   desk.frame.showMessage(
     ...(nearest_miss
       ? [describeNearMiss(nearest_miss, job.problem, solve)]
-      : [createElement("p", { class: "note", lang: foreignLanguage(summary) }, translate(summary))]),
+      : [createElement("p", { class: "note" }, summary)]),
   );
   desk.stage.showMode("watch");
 }

@@ -6,7 +6,7 @@
 import * as api from "../core/api.js";
 import { createElement, formatNumber } from "../core/dom.js";
 import { saveFile } from "../design/design_files.js";
-import { foreignLanguage, t, term, translate } from "../core/messages.js";
+import { t, term } from "../core/messages.js";
 import { interpolate } from "../core/player.js";
 import { unitSymbol } from "../core/units.js";
 
@@ -265,9 +265,7 @@ export class AssemblyView {
           t`Drag to turn; drag with the right button or two fingers to move; use the wheel or + and − to zoom. Arrow keys turn, with Shift they move; Home shows everything.`,
         ),
         this.beyond,
-        ...assembly.notes.map((note) =>
-          createElement("p", { class: "note", lang: foreignLanguage(note) }, translate(note)),
-        ),
+        ...assembly.notes.map((note) => createElement("p", { class: "note" }, note)),
       ),
     );
     this.scene = new this.drawing.AssemblyScene(canvas, assembly, {
@@ -358,7 +356,7 @@ export class AssemblyView {
     );
     const rows = [...kinds].map(([item, equals]) => {
       const [part, ...others] = equals;
-      const called = others.length ? term(item) : translate(part.described);
+      const called = others.length ? term(item) : part.described;
       const names = equals.map(({ name }) => name);
       const box = this.createCheckbox(`show-${item}`, called, names);
       const each = this.listPlaces(equals);
@@ -465,7 +463,7 @@ export class AssemblyView {
       const nth = (met.get(described) ?? 0) + 1;
       met.set(described, nth);
       const alike = equals.filter((one) => one.described === described).length > 1;
-      const called = `${translate(described)}${alike ? ` (${nth})` : ""}`;
+      const called = `${described}${alike ? ` (${nth})` : ""}`;
       const box = this.createCheckbox(`show-place-${name}`, called, [name]);
       const node = createElement(
         "label",

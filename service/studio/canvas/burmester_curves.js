@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { createElement, formatNumber, createSvg } from "../core/dom.js";
 import { Grip, dragWithPointer } from "./grip.js";
-import { t, term, translate } from "../core/messages.js";
+import { t, term } from "../core/messages.js";
 import { boardSize, createScene } from "./stage.js";
 import { View } from "../core/view.js";
 import { Zoom } from "./zoom.js";
@@ -224,7 +224,7 @@ export class BurmesterCurves {
             ? job.result.designs[0].verification.passed
               ? t`Solved: it passes all checks.`
               : t`Solved: it fails a check, listed below.`
-            : translate(job.result.summary),
+            : job.result.summary,
         );
         if (found) this.showSolved(/** @type {Solved} */ (job));
       }

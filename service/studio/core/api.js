@@ -1,6 +1,6 @@
 /** Call the public API of the service. The studio has no other source of data. */
 
-import { t, translate } from "./messages.js";
+import { language, t } from "./messages.js";
 import { tabStore } from "./storage.js";
 
 /** @import { Analysis, LinkageAnalysis, Mechanism, Problem, Question, Schemas } from "../types/values.js" */
@@ -47,14 +47,11 @@ const BUSY_MS = 5000;
 export class Refusal extends Error {
   /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
   constructor(problem, status) {
-    super(problem.detail ? translate(problem.detail) : t`The service answered with status ${status}.`);
+    super(problem.detail ?? t`The service answered with status ${status}.`);
     this.status = status;
-    this.title = problem.title ? translate(problem.title) : t`Error`;
+    this.title = problem.title ?? t`Error`;
     /** @type {FieldError[]} */
-    this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({
-      ...one,
-      detail: translate(one.detail),
-    }));
+    this.errors = problem.errors ?? [];
   }
 }
 
@@ -75,6 +72,8 @@ export function writeKey(value) {
 async function ask(path, options = {}) {
   const headers = new Headers(options.headers);
   if (readKey()) headers.set("Authorization", `Bearer ${readKey()}`);
+  // The language of the page may have been chosen in it, and then differs from that of the browser.
+  headers.set("Accept-Language", language);
   const answer = await fetch(path, { ...options, headers });
   if (!answer.ok) throw new Refusal(await answer.json().catch(() => ({})), answer.status);
   return answer;

@@ -2,8 +2,8 @@
  * Translate the texts of the page and format their numbers. The English text is the key.
  *
  * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen
- * language, and translated a text of the service; texts not found there stay English. English itself has no messages
- * and waits for none.
+ * language, and translate() a description of the service; texts not found there stay English. English itself has no
+ * messages and waits for none. Answers and errors of the service arrive in the language of the page.
  */
 
 import { localStore } from "./storage.js";
@@ -43,9 +43,6 @@ export const LIST_SEPARATOR = DECIMAL_SEPARATOR === "," ? "; " : ", ";
 
 /** Smallest number whose digits are grouped by three. */
 const MIN_GROUPED = 10_000;
-
-/** Matches a number in an English text. */
-const NUMBER_PATTERN = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
 
 /** Translations by English text; empty for English. @type {Record<string, string>} */
 const messages = language === SOURCE_LANGUAGE ? {} : await fetchMessages(languages[language].messages);
@@ -93,15 +90,11 @@ function fillPlaces(message, values) {
 }
 
 /**
- * Translate a text of the service. Numbers become places: `72 starts` is looked up as `{0} starts`.
+ * Translate a title, a name or a description of the service. Its messages are in the language of the page already.
  * @param {string} text
  */
 export function translate(text) {
-  if (language === SOURCE_LANGUAGE || text in messages) return messages[text] ?? text;
-  /** @type {string[]} */
-  const values = [];
-  const message = messages[text.replace(NUMBER_PATTERN, (one) => `{${values.push(localizeNumber(one)) - 1}}`)];
-  return message === undefined ? text : fillPlaces(message, values);
+  return messages[text] ?? text;
 }
 
 /** Return the language of a text of the service if it has no translation. @param {string} text */

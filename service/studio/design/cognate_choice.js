@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, toWords } from "../core/dom.js";
-import { foreignLanguage, t, translate } from "../core/messages.js";
+import { t } from "../core/messages.js";
 
 /** @import { Design, Mechanism, Metrics, Problem, Question, Schemas } from "../types/values.js" */
 
@@ -74,12 +74,7 @@ function describeCognate(one) {
 
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
 export function createPicker(choices, choose) {
-  // The note on the design is the service's, to be translated; the page writes the others.
-  const notes = choices.map((one, k) =>
-    k
-      ? createElement("span", {}, one.note)
-      : createElement("span", { lang: foreignLanguage(one.note) }, translate(one.note)),
-  );
+  const notes = choices.map((one) => createElement("span", {}, one.note));
   const note = createElement("span", { class: "note" }, notes[0]);
   return createElement(
     "fieldset",

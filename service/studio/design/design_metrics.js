@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { createElement, formatNumber, toWords } from "../core/dom.js";
-import { LIST_SEPARATOR, localizeNumber, t, term, translate } from "../core/messages.js";
+import { LIST_SEPARATOR, localizeNumber, t, term } from "../core/messages.js";
 import { unitSymbol } from "../core/units.js";
 
 /** @import { Design, Problem, Schemas } from "../types/values.js" */
@@ -268,7 +268,7 @@ export function createTolerances(design, problem) {
     [t`critical tolerances`, told.matter?.join(", ") || undefined],
     [t`error growth by rounding, rms residual`, cost?.rms_residual],
     [t`error growth by rounding`, cost?.max_error, length],
-    [t`remark`, translate(told.remark ?? "") || undefined],
+    [t`remark`, told.remark || undefined],
     ...Object.entries(told.dimensions ?? {}).map(
       ([name, value]) =>
         /** @type {[string, unknown, string]} */ ([

@@ -6,7 +6,7 @@ import { ForceArrows, collectForces } from "./force_arrows.js";
 import { clearRounding } from "./force_scales.js";
 import { Hodograph } from "../plots/hodograph.js";
 import { LoadEditor } from "./load_editor.js";
-import { foreignLanguage, localizeNumber, t, term, translate } from "../core/messages.js";
+import { localizeNumber, t, term } from "../core/messages.js";
 import { interpolate, clampIndex } from "../core/player.js";
 import { formatBriefly, createPlots, listRuns } from "../plots/plots.js";
 import { findPosition } from "../motion/swept_area.js";
@@ -299,9 +299,7 @@ export class ForcesPane {
       );
     return [
       ...(found.length ? [createElement("ul", { class: "gaps" }, ...found)] : []),
-      ...dynamics.warnings.map((/** @type {string} */ one) =>
-        createElement("p", { class: "note", lang: foreignLanguage(one) }, translate(one)),
-      ),
+      ...dynamics.warnings.map((/** @type {string} */ one) => createElement("p", { class: "note" }, one)),
     ];
   }
 

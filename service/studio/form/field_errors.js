@@ -1,7 +1,7 @@
 /** Show the errors of a problem at their fields. */
 
 import { createElement } from "../core/dom.js";
-import { foreignLanguage, t, term } from "../core/messages.js";
+import { t, term } from "../core/messages.js";
 
 let error_ids = 0;
 
@@ -39,7 +39,7 @@ export function showErrors(form, list, refusal) {
       "span",
       { id: `fault${++error_ids}` },
       where,
-      createElement("span", { lang: foreignLanguage(fault.detail) }, `${fault.detail} `),
+      createElement("span", {}, `${fault.detail} `),
     );
     place.slot?.append(said);
     if (cell) {
@@ -52,7 +52,7 @@ export function showErrors(form, list, refusal) {
     first ??= place.control;
   }
   list.append(
-    createElement("p", { class: "error", lang: foreignLanguage(refusal.message) }, refusal.message),
+    createElement("p", { class: "error" }, refusal.message),
     ...(lost.length
       ? [
           createElement(

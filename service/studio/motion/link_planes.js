@@ -2,7 +2,7 @@
 
 import { createElement, formatNumber, createSvg, toWords } from "../core/dom.js";
 import { groundedJoints } from "../canvas/linkage_drawing.js";
-import { foreignLanguage, t, term, translate } from "../core/messages.js";
+import { t, term } from "../core/messages.js";
 import { unitSymbol } from "../core/units.js";
 
 /** @import { Layout, Problem, Schemas, Skeleton } from "../types/values.js" */
@@ -102,8 +102,7 @@ export class LinkPlanes {
               .filter(Boolean)
               .join(", "),
       ),
-      layout.remark &&
-        createElement("p", { class: "note", lang: foreignLanguage(layout.remark) }, translate(layout.remark)),
+      layout.remark && createElement("p", { class: "note" }, layout.remark),
       listed.length > 0 && this.createPicture(),
       listed.length > 0 &&
         createElement(
