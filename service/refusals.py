@@ -11,8 +11,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from kinematics.message import compose
 from service.error_messages import MAX_FAULTS, Models, describe_faults
-from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
 """Pairs of JSON pointer and description of the fault."""
@@ -21,14 +21,15 @@ FieldFaults = Sequence[tuple[str, str]]
 class Refusal(Exception):
     """A request that is answered with an error, caused by the client or by the state of the service.
 
-    ``defect`` is the type of the internal error that led to the refusal, if there was one.
+    ``title_id`` is the id of the message that is the title. ``defect`` is the type of the internal error that led to
+    the refusal, if there was one.
     """
 
     def __init__(
         self,
         status: int,
         type_: str,
-        title: str,
+        title_id: str,
         detail: str,
         *,
         errors: FieldFaults = (),
@@ -38,7 +39,8 @@ class Refusal(Exception):
         super().__init__(detail)
         self.status = status
         self.type = f"/problems/{type_}"
-        self.title = title
+        self.title_id = title_id
+        self.title = compose(title_id)
         self.detail = detail
         self.errors = errors
         self.headers = headers
@@ -47,47 +49,47 @@ class Refusal(Exception):
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the fields: the default would call the constructor with the detail alone."""
         headers = None if self.headers is None else dict(self.headers)
-        fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
+        fields = self.type, self.title_id, self.detail, list(self.errors), headers, self.defect
         return _restore_refusal, (self.status, *fields)
 
 
 def _restore_refusal(
     status: int,
     type_: str,
-    title: str,
+    title_id: str,
     detail: str,
     errors: FieldFaults,
     headers: dict[str, str] | None,
     defect: str | None,
 ) -> Refusal:
     name = type_.removeprefix("/problems/")
-    return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
+    return Refusal(status, name, title_id, detail, errors=errors, headers=headers, defect=defect)
 
 
 def refuse_not_found(detail: str) -> Refusal:
     """Build the refusal for a missing resource."""
-    return Refusal(404, "not-found", "Not found", detail)
+    return Refusal(404, "not-found", "service-title-not-found", detail)
 
 
 def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
     """Build the refusal of an invalid problem; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-problem", "Invalid problem", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-problem", "service-title-invalid-problem", count_invalid_fields(errors), errors=errors)
 
 
 def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
     """Build the refusal of an invalid mechanism; ``errors`` are pairs of path and detail."""
     detail = count_invalid_fields(errors)
-    return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
+    return Refusal(422, "invalid-mechanism", "service-title-invalid-mechanism", detail, errors=errors, defect=defect)
 
 
 def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     """Build the refusal of another invalid part of a request; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-request", "Invalid request", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-request", "service-title-invalid-request", count_invalid_fields(errors), errors=errors)
 
 
 def refuse_invalid_body(error: ValidationError, body: object, model: type[BaseModel]) -> Refusal:
     """Build the refusal of a body that is validated by this code, against ``model``, and not by the framework."""
-    faults = error.errors(include_url=False, include_context=False)
+    faults = error.errors(include_url=False)
     return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body, {"body": model})
 
 
@@ -106,8 +108,8 @@ def count_invalid_fields(errors: FieldFaults) -> str:
     # Several faults may be reported for one field.
     count = len({path for path, _ in errors})
     if count > MAX_FAULTS:
-        return f"More than {MAX_FAULTS} fields of the request are invalid; the first {MAX_FAULTS} are listed."
-    return f"{format_count(count, 'field')} of the request {'is' if count == 1 else 'are'} invalid."
+        return compose("service-many-fields-invalid", count=MAX_FAULTS)
+    return compose("service-fields-invalid", count=count)
 
 
 __all__ = [
