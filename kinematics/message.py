@@ -129,11 +129,16 @@ def make_sentence(text: str) -> str:
 def remember(message: Message) -> str:
     """Return the text of a message, for which :func:`find_message` returns the message from now on."""
     text = translate(message, get_language())
+    remember_text(text, message)
+    return text
+
+
+def remember_text(text: str, message: Message) -> None:
+    """Remember the message of a text that another process has composed, in whatever language."""
     _remembered[text] = message
     _remembered.move_to_end(text)
     while len(_remembered) > MAX_REMEMBERED:
         _remembered.popitem(last=False)
-    return text
 
 
 def find_message(text: str) -> Message | None:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import cast
 
+from kinematics.message import compose, join_messages
 from service.requests import Faults, check_consistency, check_fields
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import ProblemBase
@@ -45,7 +46,7 @@ def check_problem(problem: Problem) -> ProblemBase:
     statement = build_statement(problem)
     kind = statement.get("kind")
     if kind not in KINDS:
-        raise InvalidProblem({"/kind": f"Kind must be given and be one of: {', '.join(KINDS)}."})
+        raise InvalidProblem({"/kind": compose("service-kind-unknown", names=", ".join(KINDS))})
     read, faults = check_fields(kind, statement)
     # Only valid fields can be checked for contradictions.
     faults = faults or check_consistency(read)
@@ -58,5 +59,5 @@ def _merge_by_path(faults: Faults) -> dict[str, str]:
     errors: dict[str, str] = {}
     for path, detail in faults:
         # One field may contradict several others.
-        errors[path] = f"{errors[path]} {detail}" if path in errors else detail
+        errors[path] = join_messages([errors[path], detail]) if path in errors else detail
     return errors

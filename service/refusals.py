@@ -11,9 +11,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from kinematics.message import Message, find_message, remember
+from kinematics.message import Message, compose, find_message, remember_text
 from service.error_messages import MAX_FAULTS, Models, describe_faults
-from synthesis.model.counting import format_count
 
 FieldFaults = Sequence[tuple[str, str]]
 """Pairs of JSON pointer and description of the fault."""
@@ -22,14 +21,15 @@ FieldFaults = Sequence[tuple[str, str]]
 class Refusal(Exception):
     """A request that is answered with an error, caused by the client or by the state of the service.
 
-    ``defect`` is the type of the internal error that led to the refusal, if there was one.
+    ``title_id`` is the id of the message that is the title. ``defect`` is the type of the internal error that led to
+    the refusal, if there was one.
     """
 
     def __init__(
         self,
         status: int,
         type_: str,
-        title: str,
+        title_id: str,
         detail: str,
         *,
         errors: FieldFaults = (),
@@ -39,7 +39,8 @@ class Refusal(Exception):
         super().__init__(detail)
         self.status = status
         self.type = f"/problems/{type_}"
-        self.title = title
+        self.title_id = title_id
+        self.title = compose(title_id)
         self.detail = detail
         self.errors = errors
         self.headers = headers
@@ -48,52 +49,52 @@ class Refusal(Exception):
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the fields and the messages of the texts: the default would call the constructor with the detail."""
         headers = None if self.headers is None else dict(self.headers)
-        fields = self.type, self.title, self.detail, list(self.errors), headers, self.defect
-        texts = [self.title, self.detail, *(text for _, text in self.errors)]
-        messages = [message for text in texts if (message := find_message(text)) is not None]
+        fields = self.type, self.title_id, self.detail, list(self.errors), headers, self.defect
+        texts = [self.detail, *(text for _, text in self.errors)]
+        messages = [(text, message) for text in texts if (message := find_message(text)) is not None]
         return _restore_refusal, (self.status, *fields, messages)
 
 
 def _restore_refusal(
     status: int,
     type_: str,
-    title: str,
+    title_id: str,
     detail: str,
     errors: FieldFaults,
     headers: dict[str, str] | None,
     defect: str | None,
-    messages: Sequence[Message],
+    messages: Sequence[tuple[str, Message]],
 ) -> Refusal:
-    for message in messages:
-        remember(message)
+    for text, message in messages:
+        remember_text(text, message)
     name = type_.removeprefix("/problems/")
-    return Refusal(status, name, title, detail, errors=errors, headers=headers, defect=defect)
+    return Refusal(status, name, title_id, detail, errors=errors, headers=headers, defect=defect)
 
 
 def refuse_not_found(detail: str) -> Refusal:
     """Build the refusal for a missing resource."""
-    return Refusal(404, "not-found", "Not found", detail)
+    return Refusal(404, "not-found", "service-title-not-found", detail)
 
 
 def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
     """Build the refusal of an invalid problem; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-problem", "Invalid problem", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-problem", "service-title-invalid-problem", count_invalid_fields(errors), errors=errors)
 
 
 def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
     """Build the refusal of an invalid mechanism; ``errors`` are pairs of path and detail."""
     detail = count_invalid_fields(errors)
-    return Refusal(422, "invalid-mechanism", "Invalid mechanism", detail, errors=errors, defect=defect)
+    return Refusal(422, "invalid-mechanism", "service-title-invalid-mechanism", detail, errors=errors, defect=defect)
 
 
 def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     """Build the refusal of another invalid part of a request; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-request", "Invalid request", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-request", "service-title-invalid-request", count_invalid_fields(errors), errors=errors)
 
 
 def refuse_invalid_body(error: ValidationError, body: object, model: type[BaseModel]) -> Refusal:
     """Build the refusal of a body that is validated by this code, against ``model``, and not by the framework."""
-    faults = error.errors(include_url=False, include_context=False)
+    faults = error.errors(include_url=False)
     return refuse_faults([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body, {"body": model})
 
 
@@ -112,8 +113,8 @@ def count_invalid_fields(errors: FieldFaults) -> str:
     # Several faults may be reported for one field.
     count = len({path for path, _ in errors})
     if count > MAX_FAULTS:
-        return f"More than {MAX_FAULTS} fields of the request are invalid; the first {MAX_FAULTS} are listed."
-    return f"{format_count(count, 'field')} of the request {'is' if count == 1 else 'are'} invalid."
+        return compose("service-many-fields-invalid", count=MAX_FAULTS)
+    return compose("service-fields-invalid", count=count)
 
 
 __all__ = [

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
+from kinematics.message import compose
 from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal, refuse_not_found
@@ -27,10 +28,10 @@ def draw_design(job: SolvedJob, number: str, form: Form) -> str | bytes:
     try:
         return render.export_design(designs[n], problem, render.make_heading(problem, job.label, n), form)
     except render.NoSuchExport:
-        raise refuse_not_found(f"This type of mechanism has no .{form} file.") from None
+        raise refuse_not_found(compose("service-file-unavailable", form=form)) from None
     except render.NotBuilt:
-        detail = "The size of this design is beyond the range for drawings."
-        raise Refusal(409, "no-drawing", "No drawing", detail) from None
+        detail = compose("service-design-too-large-to-draw")
+        raise Refusal(409, "no-drawing", "service-title-no-drawing", detail) from None
 
 
 def move_design(result: str, number: str, steps: int) -> bytes:
@@ -52,6 +53,6 @@ def move_design(result: str, number: str, steps: int) -> bytes:
             answer = get_family(mechanism).request.analyze_cycle(mechanism, steps)
         except (ValidationError, MechanismError, kinematics.MechanismError):
             # A design for a problem with lengths near the permitted limits may exceed these limits itself.
-            detail = "The size of this design is beyond the range for analyses."
-            raise Refusal(409, "no-motion", "No motion", detail) from None
+            detail = compose("service-design-too-large-to-analyse")
+            raise Refusal(409, "no-motion", "service-title-no-motion", detail) from None
         return to_json(answer, inf_nan_mode="null")

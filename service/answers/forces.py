@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import to_json
 
-from kinematics.message import make_sentence
+from kinematics.message import compose, make_sentence
 from service.answers.job_result import SolvedJob, parse_design_index
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal, refuse_invalid_body, refuse_invalid_request
@@ -37,10 +37,10 @@ def _compute_forces(job: SolvedJob, number: str, steps: int, body: object) -> by
     if body is None and getattr(design, "dynamics", None):
         return to_json(_compute_own_forces(problem, design, steps), inf_nan_mode="null")
     if not isinstance(problem, LinkageProblem):
-        raise _refuse_forces("Joint forces are available for linkages only.")
+        raise _refuse_forces(compose("service-forces-for-linkages-only"))
     if body is None:
         if problem.dynamics is None:
-            raise _refuse_forces("The problem has no `dynamics`; post your own block.")
+            raise _refuse_forces(compose("service-problem-without-dynamics"))
         block: Any = problem.dynamics
     else:
         try:
@@ -68,4 +68,4 @@ def _compute_own_forces(problem: Any, design: Any, steps: int) -> JsonObject:
 
 
 def _refuse_forces(detail: str) -> Refusal:
-    return Refusal(409, "no-forces", "No forces", detail)
+    return Refusal(409, "no-forces", "service-title-no-forces", detail)

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from kinematics.message import compose
 from service.refusals import refuse_not_found
 from service.requests import load_stored_problem
 from synthesis.model.answer import Result
@@ -47,8 +48,8 @@ def parse_design_index(number: str, designs: int) -> int:
     """
     if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
         raise refuse_not_found(
-            f"Design {number[:20]} does not exist; this job has designs 0 to {designs - 1}."
+            compose("service-design-unknown", number=number[:20], last=str(designs - 1))
             if designs
-            else "This job has no designs."
+            else compose("service-job-without-designs")
         )
     return int(number)

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 import structlog
 
+from kinematics.message import compose
 from service.refusals import Refusal, refuse_invalid_mechanism
 
 NUMERICAL_ERRORS = (ArithmeticError, ValueError, IndexError)
@@ -34,5 +35,5 @@ def refuse_numerical_errors(path: str = "/mechanism") -> Iterator[None]:
         raise
     except NUMERICAL_ERRORS as error:
         log.exception("a numerical error has escaped", error=type(error).__name__)
-        detail = "The computation failed for these numbers; check all sizes, angles and counts."
+        detail = compose("service-computation-impossible")
         raise refuse_invalid_mechanism([(path, detail)], defect=type(error).__name__) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kinematics.message import compose
 from service.answers.job_result import SolvedJob, parse_design_index
 from service.refusals import Refusal, refuse_invalid_request, refuse_not_found
 from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery
@@ -24,13 +25,11 @@ def simulate_design(job: SolvedJob, number: str, form: Form, query: SimulationQu
     try:
         return n, write_simulation(designs[n], problem, make_heading(problem, job.label, n), form, query)
     except NoSimulation:
-        raise refuse_not_found(
-            "This type of mechanism has no simulations; they exist for linkages and gear trains."
-        ) from None
+        raise refuse_not_found(compose("service-simulation-unavailable")) from None
     except NotSimulated as error:
         if error.path:
             raise refuse_invalid_request([(error.path, str(error))]) from None
-        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None
+        raise Refusal(409, "no-simulation", "service-title-no-simulation", str(error)) from None
 
 
 def open_in_pmks(job: SolvedJob, number: str) -> tuple[str, float]:
@@ -48,6 +47,6 @@ def open_in_pmks(job: SolvedJob, number: str) -> tuple[str, float]:
     try:
         return open_in_pmks(designs[n], job.load_problem())
     except NoSimulation:
-        raise refuse_not_found("PMKS+ opens linkages only.") from None
+        raise refuse_not_found(compose("service-pmks-opens-linkages-only")) from None
     except NotSimulated as error:
-        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None
+        raise Refusal(409, "no-simulation", "service-title-no-simulation", str(error)) from None

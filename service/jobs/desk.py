@@ -9,6 +9,7 @@ from typing import Literal
 import structlog
 from starlette.concurrency import run_in_threadpool
 
+from kinematics.message import compose
 from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
 from service.jobs.job_store import JobStore
@@ -159,5 +160,5 @@ class JobDesk:
             await run_in_threadpool(self.store.ping)
         except Exception:  # any error of the database driver means the same here: no store
             log.exception("the store does not answer")
-            return "The job store does not answer."
-        return None if self.executor.count_ready_workers() > 0 else "No worker has finished starting yet."
+            return compose("service-store-silent")
+        return None if self.executor.count_ready_workers() > 0 else compose("service-no-worker-started")

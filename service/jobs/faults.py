@@ -4,28 +4,39 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
+from kinematics.message import Message, compose, find_message, remember
 from service.error_messages import MAX_FAULTS
+from synthesis.model.json_object import JsonObject
 from synthesis.model.text_messages import list_messages
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A problem-details object (RFC 9457) without the field ``instance``."""
+    """A problem-details object (RFC 9457) without the field ``instance``; its texts are composed when it is used."""
 
     type: str
-    title: str
+    title_id: str
     status: int
-    detail: str
+    message: Message
     errors: Sequence[tuple[str, str]] | None = None
+
+    @property
+    def detail(self) -> str:
+        """Description of the fault."""
+        return remember(self.message)
 
     def as_json(self, job_id: str) -> str:
         """Return the object as JSON for the row of the job."""
-        details = {**asdict(self), "instance": f"/v1/jobs/{job_id}"}
-        if self.errors is None:
-            del details["errors"]
-        else:
+        details: JsonObject = {
+            "type": self.type,
+            "title": compose(self.title_id),
+            "status": self.status,
+            "detail": self.detail,
+            "instance": f"/v1/jobs/{job_id}",
+        }
+        if self.errors is not None:
             details["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
         details["messages"] = [message.model_dump() for message in list_messages(details)]
         return json.dumps(details)
@@ -33,15 +44,15 @@ class Fault:
 
 INTERNAL_ERROR = Fault(
     "/problems/internal-error",
-    "Internal error",
+    "service-title-internal-error",
     500,
-    "The computation failed because of a defect of the service; its log has the details.",
+    Message("service-computation-failed", {}),
 )
 WORKER_DIED = Fault(
     "/problems/worker-died",
-    "Worker died",
+    "service-title-worker-died",
     500,
-    "The job was given up because its worker process died in every attempt.",
+    Message("service-worker-died", {}),
 )
 
 
@@ -49,9 +60,9 @@ def make_timeout(limit_s: float) -> Fault:
     """Build the fault of a job that took longer than ``limit_s`` seconds."""
     return Fault(
         "/problems/timeout",
-        "Timeout",
+        "service-title-timeout",
         504,
-        f"The computation was stopped at the time limit of {limit_s:g} s.",
+        Message("service-time-limit-exceeded", {"seconds": f"{limit_s:g}"}),
     )
 
 
@@ -59,9 +70,9 @@ def make_out_of_memory(limit_mb: int) -> Fault:
     """Build the fault of a job that needed more than ``limit_mb`` MiB."""
     return Fault(
         "/problems/out-of-memory",
-        "Out of memory",
+        "service-title-out-of-memory",
         507,
-        f"The computation exceeded the memory limit of {limit_mb} MiB.",
+        Message("service-memory-limit-exceeded", {"size": str(limit_mb)}),
     )
 
 
@@ -70,10 +81,14 @@ def make_invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
 
     At most :data:`~service.error_messages.MAX_FAULTS` errors are reported, as for a refused job.
     """
+    path, reason = errors[0]
     return Fault(
         "/problems/invalid-problem",
-        "Invalid problem",
+        "service-title-invalid-problem",
         422,
-        f"With these values the problem is invalid: {errors[0][0]}: {errors[0][1]}",
+        Message(
+            "service-sample-invalid",
+            {"path": path, "reason": find_message(reason) or reason},
+        ),
         errors[:MAX_FAULTS],
     )

@@ -9,6 +9,7 @@ from itertools import chain
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from synthesis.model.linkage.given_linkage import AGREEMENT_TOLERANCE
 
 FIRST_ANGLE_DEGREES = 30
@@ -25,11 +26,13 @@ class MechanismError(ValueError):
         super().__init__(f"{path}: {detail}")
 
 
-def require_agreement(path: str, given: float | None, measured: float, what: str = "the fixed pivots") -> None:
+def require_agreement(
+    path: str, given: float | None, measured: float, message_id: str = "mechanisms-pivots-give-other-distance"
+) -> None:
     """Raise MechanismError if a redundant dimension contradicts the others, which give the value ``measured``."""
     # The tolerance is relative to the larger value, so that the order of the two does not matter.
     if given is not None and abs(given - measured) > AGREEMENT_TOLERANCE * max(abs(measured), abs(given)):
-        raise MechanismError(path, f"{what} give {measured:.9g}; leave the field out or correct it")
+        raise MechanismError(path, compose(message_id, length=f"{measured:.9g}"))
 
 
 def assemble_at_reference(
@@ -56,16 +59,14 @@ def assemble_at_reference(
         try:
             return make(math.radians(degrees))
         except DimensionError:
-            raise MechanismError(
-                "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
-            ) from None
+            raise MechanismError("/reference_input_angle", compose("mechanisms-not-assembled-at-angle")) from None
     # Try whole degrees first, because they give readable results; the computed angles are the fallback.
     for angle in chain((math.radians((FIRST_ANGLE_DEGREES + step) % 360) for step in range(360)), between):
         try:
             return make(angle)
         except DimensionError:
             continue
-    raise MechanismError("/links", "the mechanism cannot be assembled with these lengths at any input angle")
+    raise MechanismError("/links", compose("mechanisms-not-assembled-at-any-angle"))
 
 
 def find_reaching_angles(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:

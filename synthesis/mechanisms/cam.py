@@ -15,6 +15,7 @@ from kinematics.cam import contours
 from kinematics.cam import follower as core
 from kinematics.cam.finished.contact import Contour
 from kinematics.errors import DimensionError
+from kinematics.message import compose
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.json_object import JsonObject
@@ -36,6 +37,14 @@ FOLLOWERS: dict[FollowerType, type[core.Follower]] = {
 }
 """Followers of the analysis core by type. The first field of each is the radius of its cam's prime circle or base
 circle."""
+
+
+_NEEDED_BY: dict[FollowerType, str] = {
+    "translating_roller": "mechanisms-needed-by-translating-roller",
+    "oscillating_roller": "mechanisms-needed-by-oscillating-roller",
+    "oscillating_flat": "mechanisms-needed-by-oscillating-flat",
+}
+"""Messages for a missing dimension of a follower, by its type."""
 
 
 def get_follower_type(follower: core.Follower) -> FollowerType:
@@ -101,13 +110,13 @@ class GivenFollower(Statement):
         needed += ("arm", "pivot_distance") if self.type == "oscillating_roller" else ()
         for name in needed:
             if getattr(self, name) is None:
-                raise MechanismError(f"/follower/{name}", f"a {self.type.replace('_', ' ')} needs it")
+                raise MechanismError(f"/follower/{name}", compose(_NEEDED_BY[self.type]))
         roller = self.type.endswith("roller")
         # Displacement 0 is on the prime circle for a roller, and on the base circle for a flat face.
         radius = prime_radius if roller else base_radius
         if radius is None:
             name = "prime_radius" if roller else "base_radius"
-            raise MechanismError(f"/{name}", "needed to define zero displacement")
+            raise MechanismError(f"/{name}", compose("mechanisms-zero-displacement-undefined"))
         try:
             return build_follower(self.type, radius, self)
         except DimensionError as error:
@@ -124,7 +133,7 @@ class GivenCurve(Statement):
     def convert_points(self, path: str) -> NDArray[np.complex128]:
         """Return the points as complex numbers; errors are reported under ``path``."""
         if len(self.x) != len(self.y):
-            raise MechanismError(f"{path}/y", "expected as many values as x")
+            raise MechanismError(f"{path}/y", compose("mechanisms-as-many-values-as-x"))
         return np.array(self.x) + 1j * np.array(self.y)
 
     def build_contour(self, path: str) -> Contour:
@@ -133,7 +142,7 @@ class GivenCurve(Statement):
         try:
             return Contour(points)
         except DimensionError:
-            raise MechanismError(path, "neighbouring points must be different") from None
+            raise MechanismError(path, compose("mechanisms-neighbouring-points-equal")) from None
 
 
 class GivenCam(Statement):
@@ -163,7 +172,7 @@ class GivenCam(Statement):
     def build_wall(self) -> Contour | None:
         """Build the outer wall of a groove; None for an open cam."""
         if self.outer_wall is not None and not self.follower.type.endswith("roller"):
-            raise MechanismError("/outer_wall", "only a roller runs in a groove")
+            raise MechanismError("/outer_wall", compose("mechanisms-groove-needs-roller"))
         return None if self.outer_wall is None else self.outer_wall.build_contour("/outer_wall")
 
 
@@ -229,7 +238,7 @@ class ArcContour(_NosedContour):
         radius = self.flank_radius
         # Both ways to describe the flank together could contradict each other.
         if (radius is None) == (self.half_action_angle is None):
-            raise MechanismError("/contour/flank_radius", "give either this or the half action angle")
+            raise MechanismError("/contour/flank_radius", compose("mechanisms-flank-radius-or-angle"))
         if radius is None:
             angle = math.radians(self.half_action_angle or 0.0)
             radius = contours.compute_flank_radius(self.base_radius, self.nose_radius, self.nose_distance, angle)

@@ -19,6 +19,7 @@ from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import find_cycle_from_reference
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose
 from synthesis.model.dynamics.loads import (
     FULL_TURN,
     ForceCurve,
@@ -66,19 +67,19 @@ def find_course_errors(course: ForceCurve | TorqueCurve, mechanism: Mechanism) -
     slide = mechanism.has_slide_input
     if slide != (course.by == "input_position"):
         # Further checks would only repeat this error in other words.
-        yield "/by", "a slide drives this mechanism" if slide else "the angle of a link drives this mechanism"
+        yield "/by", compose("mechanisms-slide-drives" if slide else "mechanisms-link-drives")
         return
     if slide:
         if course.interpolation != "linear":
-            yield "/interpolation", "the position of a slide is not periodic; use linear"
+            yield "/interpolation", compose("mechanisms-slide-not-periodic")
         if course.turns is not None:
-            yield "/turns", "a slide does not turn"
+            yield "/turns", compose("mechanisms-slide-does-not-turn")
         return
     try:
         period = FULL_TURN * count_turns(course, mechanism)
     except KinematicsError as error:
         # The period is unknown, for example with gears of irrational ratio.
-        yield "/turns", f"give the number of turns after which the table repeats: {error}"
+        yield "/turns", compose("mechanisms-table-period-unknown", reason=str(error))
         return
     fault = find_period_error(course.table, period)
     if fault is not None:
@@ -143,12 +144,12 @@ def find_top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, compl
         If no crank moves the joint, or if the crank cannot make a full turn.
     """
     if mechanism.has_slide_input:
-        raise ValueError("gas pressure needs a piston moved by a crank; a slide drives this mechanism")
+        raise ValueError(compose("mechanisms-gas-with-driving-slide"))
     name = mechanism.slide_names[slide]
     at = 2.0 * math.pi * np.arange(STEP_COUNT) / STEP_COUNT
     motion = drive(mechanism, at, order=0)
     if not motion.valid.all():
-        raise ValueError("gas pressure needs a piston moved by a crank; the input cannot make a full turn")
+        raise ValueError(compose("mechanisms-gas-without-full-turn"))
     along = motion.slides[name][0]
     line = mechanism.slides[slide]
     direction = complex(np.exp(1j * line.angle))
@@ -179,7 +180,7 @@ def build_gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: f
     """
     slide = find_ground_slide(mechanism, joint)
     if slide is None:
-        raise ValueError(f"gas acts on a piston; the joint {joint} is on no slide of the ground")
+        raise ValueError(compose("mechanisms-gas-without-piston", joint=joint))
     top, way = find_top_dead_centre(mechanism, slide)
     area = math.pi / 4.0 * (scale * gas.bore) ** 2
     pressure = interpolate_table(np.array(gas.pressure, np.float64), float(gas.cycle), gas.interpolation)

@@ -16,6 +16,7 @@ from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.branches import count_turns_until_repeat
 from kinematics.linkage.planar.catalogue import ASSEMBLY_SIGNS
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from synthesis.mechanisms.base import MechanismError, assemble_at_reference, require_agreement
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.model.linkage.given_linkage import Assembly, CouplerPointSpec, FixedPivotsSpec
@@ -57,7 +58,7 @@ class GivenGearedFivebar(GivenByDimensions):
         o2, o5 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         require_agreement("/links/ground", self.links.ground, abs(o5 - o2))
         if o2 == o5:
-            raise MechanismError("/fixed_pivots/output", "both fixed pivots coincide; they must be different")
+            raise MechanismError("/fixed_pivots/output", compose("mechanisms-fixed-pivots-coincide"))
         return assemble_at_reference(
             lambda angle: catalogue.make_geared_fivebar(
                 o2,

@@ -8,6 +8,7 @@ from typing import SupportsComplex
 
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body, join_bodies, make_body
+from kinematics.message import compose
 from synthesis.model.dynamics.bodies import BodySpec, Part, Place, PolarPoint, Shape
 
 
@@ -78,14 +79,12 @@ class LinkBodies:
             path = f"/dynamics/bodies/{escape_pointer(link)}/shape"
             # A degenerate polygon has no area, and too large holes leave none.
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
-                raise BlockError(path, "the plate has no area; the polygon is flat, or the holes are too wide")
+                raise BlockError(path, compose("mechanisms-plate-without-area"))
             for joint, diameter in shape.holes.items():
                 # A hole that is not wider than the plate stays inside its round ends.
                 wider = 0.0 if shape.width is None else diameter - shape.width
                 if wider > 0.0 and self._is_at_edge(link, joint, wider):
-                    raise BlockError(
-                        f"{path}/holes/{escape_pointer(joint)}", "the hole extends beyond the edge of the plate"
-                    )
+                    raise BlockError(f"{path}/holes/{escape_pointer(joint)}", compose("mechanisms-hole-beyond-edge"))
             bodies.append(plate.body(shape.material_density, self.scale * shape.thickness))
         return join_bodies(bodies)
 

@@ -21,6 +21,7 @@ from kinematics.dynamics.springs import MIN_LENGTH, Spring, TorsionSpring, follo
 from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.branches import compute_cycle
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose
 from synthesis.mechanisms.courses import build_course, build_gas_force, find_course_errors, find_ground_slide
 from synthesis.mechanisms.link_bodies import BlockError, LinkBodies, escape_pointer
 from synthesis.model.dynamics.bodies import Place, PolarPoint
@@ -58,26 +59,35 @@ def _find_build_errors(block: LoadedLinkage, mechanism: Mechanism) -> list[Fault
 
 def _find_name_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     moving = [link for link in mechanism.links if link != GROUND]
-    no_link = f"no link in motion; they are {', '.join(moving)}"
-    no_joint = f"no joint of the mechanism; they are {', '.join(mechanism.joints)}"
+
+    # Usually there is no error, so texts are composed only when one is found.
+    def describe_link() -> str:
+        return compose("mechanisms-unknown-moving-link", links=", ".join(moving))
+
+    def describe_joint() -> str:
+        return compose("mechanisms-unknown-joint", joints=", ".join(mechanism.joints))
+
     for name, stated in block.bodies.items():
         path = f"/dynamics/bodies/{escape_pointer(name)}"
         if name not in moving:
-            yield path, no_link
+            yield path, describe_link()
         elif stated.shape is not None:
             for joint in stated.shape.holes:
                 if joint not in mechanism.links[name]:
-                    yield f"{path}/shape/holes/{escape_pointer(joint)}", f"no joint of {name}"
+                    yield (
+                        f"{path}/shape/holes/{escape_pointer(joint)}",
+                        compose("mechanisms-joint-of-other-link", link=name),
+                    )
             if stated.shape.ends == "square" and len(mechanism.links[name]) != 2:
-                yield f"{path}/shape/ends", "only a bar with two joints has ends"
+                yield f"{path}/shape/ends", compose("mechanisms-ends-without-bar")
     for n, mass in enumerate(block.point_masses):
         if mass.joint not in mechanism.joints:
-            yield f"/dynamics/point_masses/{n}/joint", no_joint
+            yield f"/dynamics/point_masses/{n}/joint", describe_joint()
     for n, load in enumerate(block.loads):
         if load.link is not None and load.link not in moving:
-            yield f"/dynamics/loads/{n}/link", no_link
+            yield f"/dynamics/loads/{n}/link", describe_link()
         if load.joint is not None and load.joint not in mechanism.joints:
-            yield f"/dynamics/loads/{n}/joint", no_joint
+            yield f"/dynamics/loads/{n}/joint", describe_joint()
         yield from _find_course_errors(f"/dynamics/loads/{n}", load, mechanism)
     for n, spring in enumerate(block.springs):
         yield from _find_spring_errors(f"/dynamics/springs/{n}", spring, mechanism)
@@ -89,33 +99,30 @@ def _find_friction_errors(block: LoadedLinkage, mechanism: Mechanism) -> Iterato
         return
     # With redundant constraints the joint forces, and so the friction, are not determined.
     if mechanism.redundant:
-        yield "/dynamics/friction", "constraints are redundant, so that the forces that cause friction are not unique"
+        yield "/dynamics/friction", compose("mechanisms-friction-with-redundancy")
     rubbing = find_rubbing_joints(mechanism)
     for joint in block.friction.pins:
         if joint not in rubbing:
             yield (
                 f"/dynamics/friction/pins/{escape_pointer(joint)}",
-                f"nothing turns there; pins are {', '.join(rubbing)}",
+                compose("mechanisms-friction-without-rotation", pins=", ".join(rubbing)),
             )
     for slide in block.friction.slides:
         if int(slide) >= len(mechanism.slides):
             yield (
                 f"/dynamics/friction/slides/{slide}",
-                f"the mechanism has {len(mechanism.slides)} slides, counted from 0",
+                compose("mechanisms-unknown-slide", count=len(mechanism.slides)),
             )
 
 
 def _find_report_errors(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     if block.report is not None and "joint_force_index" in block.report and not block.loads:
-        yield "/dynamics/report", "the joint force index needs at least one load"
+        yield "/dynamics/report", compose("mechanisms-index-needs-load")
     if block.report is not None and "joint_force_index" in block.report and mechanism.redundant:
-        yield "/dynamics/report", "constraints are redundant, so that the joint forces of the index are not unique"
-    if mechanism.has_slide_input:
-        detail = "a flywheel needs a driving shaft; a slide drives this mechanism"
-        if block.flywheel is not None:
-            yield "/dynamics/flywheel", detail
-        elif block.is_reported("flywheel"):
-            yield "/dynamics/report", detail
+        yield "/dynamics/report", compose("mechanisms-index-with-redundancy")
+    if mechanism.has_slide_input and block.is_reported("flywheel"):
+        path = "/dynamics/report" if block.flywheel is None else "/dynamics/flywheel"
+        yield path, compose("mechanisms-flywheel-with-driving-slide")
 
 
 def _find_course_errors(path: str, load: LoadSpec, mechanism: Mechanism) -> Iterator[Fault]:
@@ -131,30 +138,30 @@ def _find_course_errors(path: str, load: LoadSpec, mechanism: Mechanism) -> Iter
 
 
 def _find_spring_errors(path: str, spring: SpringSpec, mechanism: Mechanism) -> Iterator[Fault]:
-    no_link = f"no link; they are {', '.join(mechanism.links)}"
     if spring.ends is not None:
         first, second = (end.link for end in spring.ends)
         listed, between = [f"{path}/ends/0/link", f"{path}/ends/1/link"], f"{path}/ends"
     else:
         first, second = spring.links or ("", "")
         listed, between = [f"{path}/links/0", f"{path}/links/1"], f"{path}/links"
-    missing = [place for place, link in zip(listed, (first, second), strict=True) if link not in mechanism.links]
-    yield from ((place, no_link) for place in missing)
+    for place, link in zip(listed, (first, second), strict=True):
+        if link not in mechanism.links:
+            yield place, compose("mechanisms-unknown-link", links=", ".join(mechanism.links))
     if first == second:
-        yield between, f"a spring acts between two links; both of its ends are on {first}"
+        yield between, compose("mechanisms-spring-on-one-link", link=first)
 
 
 def _find_drive_errors(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     stated = block.drive
     if stated == "torque" and mechanism.has_slide_input:
-        yield "/dynamics/drive", "a slider drives this mechanism; leave the field out"
+        yield "/dynamics/drive", compose("mechanisms-torque-with-driving-slider")
     if isinstance(stated, DrivenSlide):
         drives = [n for n, s in enumerate(mechanism.slides) if s.joint == mechanism.input and s.link == GROUND]
         if stated.slide not in drives:
             detail = (
-                f"the slide that drives is {drives[0]}"
+                compose("mechanisms-other-slide-drives", slide=str(drives[0]))
                 if drives
-                else "a torque on the input link drives this mechanism"
+                else compose("mechanisms-input-link-drives")
             )
             yield "/dynamics/drive/slide", detail
 
@@ -180,10 +187,10 @@ def build_machine(block: LoadedLinkage, mechanism: Mechanism, unit: LengthUnit) 
         )
         # Only a given inertia can be impossible, because shapes are consistent by construction.
         if stated.shape is None and is_too_slender(part, reach):
-            warnings.append(f"bodies: {link} has a moment of inertia that no body of its mass and length has")
+            warnings.append(compose("mechanisms-impossible-inertia", link=link))
     massless = [link for link in mechanism.links if link != GROUND and link not in block.bodies]
     if massless:
-        warnings.append(f"bodies: without mass are {', '.join(massless)}")
+        warnings.append(compose("mechanisms-massless-links", links=", ".join(massless)))
     masses: dict[str, float] = {}
     # Several masses at one joint add up.
     for stated_mass in block.point_masses:
@@ -355,7 +362,7 @@ class _MachineBuilder(LinkBodies):
         if abs(complex(second - first)) <= MIN_LENGTH * size and (
             spring_spec.free_length > 0.0 or spring_spec.preload != 0.0
         ):
-            raise BlockError(f"{path}/ends", "both ends coincide in the reference, so that the force has no direction")
+            raise BlockError(f"{path}/ends", compose("mechanisms-spring-without-direction"))
         return Spring(
             (spring_spec.ends[0].link, spring_spec.ends[1].link),
             (first, second),
@@ -375,5 +382,5 @@ class _MachineBuilder(LinkBodies):
             # The motion of an input slide does not repeat by turns, so its period is infinite.
             period = math.inf if self.mechanism.has_slide_input else compute_cycle(self.mechanism)
         except KinematicsError as error:
-            raise BlockError(path, f"the rotation of the torsion spring cannot be followed: {error}") from None
+            raise BlockError(path, compose("mechanisms-torsion-spring-not-followed", reason=str(error))) from None
         return follow_rotation(self.mechanism, links, period)

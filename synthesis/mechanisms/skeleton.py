@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
+from kinematics.message import compose, join_messages
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.given_linkage import (
@@ -42,7 +43,7 @@ def assemble_skeleton(spec: SkeletonSpec, degrees: float | None = None) -> Mecha
 def _build_mechanism(spec: SkeletonSpec, turns: int) -> Mechanism:
     names = [link.name for link in spec.links]
     if len(set(names)) != len(names):
-        raise MechanismError("/skeleton/links", "the names of the links must be different")
+        raise MechanismError("/skeleton/links", compose("mechanisms-link-names-equal"))
     try:
         return Mechanism(
             {name: complex(*point) for name, point in spec.joints.items()},
@@ -146,15 +147,19 @@ class GivenSkeleton(Statement):
             listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
             distances = [distance for joints in listed for distance in _measure_distances(assembled, joints)]
             if not any(abs(stated - distance) <= AGREEMENT_TOLERANCE * max(stated, distance) for distance in distances):
-                of = f"the skeleton's link {name!r} has" if name in assembled.links else "the skeleton has a link with"
-                shown = ", ".join(f"{distance:.9g}" for distance in distances[:MAX_SHOWN])
-                raise MechanismError(f"/links/{name}", f"{of} joints {shown} apart; leave the field out or correct it")
+                shown = join_messages((f"{distance:.9g}" for distance in distances[:MAX_SHOWN]), ", ")
+                raise MechanismError(
+                    f"/links/{name}",
+                    compose("mechanisms-skeleton-link-has-other-lengths", link=repr(name), lengths=shown)
+                    if name in assembled.links
+                    else compose("mechanisms-skeleton-has-other-lengths", lengths=shown),
+                )
         # Coordinates are compared relative to the extent of the skeleton.
         size = max((abs(complex(z)) for z in assembled.joints.values()), default=1.0)
         for name, pivot in self.fixed_pivots.items():
             ground = [complex(assembled.joints[joint]) for joint in assembled.links[GROUND]]
             if not any(abs(complex(*pivot) - z) <= AGREEMENT_TOLERANCE * size for z in ground):
-                raise MechanismError(f"/fixed_pivots/{name}", "the skeleton's ground has no joint there")
+                raise MechanismError(f"/fixed_pivots/{name}", compose("mechanisms-ground-without-joint"))
         self._require_agreement(assembled)
         return assembled
 
@@ -163,20 +168,20 @@ class GivenSkeleton(Statement):
         if self.coupler_point is not None:
             missing = [name for name in ("A", "B", "P") if name not in assembled.joints]
             if missing:
-                raise MechanismError("/coupler_point", f"the skeleton has no joint {missing[0]}")
+                raise MechanismError("/coupler_point", compose("mechanisms-skeleton-lacks-joint", joint=missing[0]))
             a, b, p = (complex(assembled.joints[name]) for name in ("A", "B", "P"))
             point = a + self.coupler_point.vector * (b - a) / abs(b - a)
             if abs(point - p) > AGREEMENT_TOLERANCE * max(abs(p - a), abs(b - a)):
-                raise MechanismError("/coupler_point", "the skeleton has another P; leave the field out or correct it")
+                raise MechanismError("/coupler_point", compose("mechanisms-skeleton-has-other-point"))
         if self.reference_input_angle is not None:
             if assembled.has_slide_input:
-                raise MechanismError("/reference_input_angle", "a slide drives this mechanism; leave the field out")
+                raise MechanismError("/reference_input_angle", compose("mechanisms-angle-with-driving-slide"))
             # Angles are equal modulo a full turn.
             off = math.remainder(math.degrees(float(assembled.reference_input)) - self.reference_input_angle, 360.0)
             if abs(off) > AGREEMENT_TOLERANCE * 360.0:
                 raise MechanismError(
                     "/reference_input_angle",
-                    "the skeleton's input link has another angle; leave the field out or correct it",
+                    compose("mechanisms-skeleton-has-other-angle"),
                 )
 
 
@@ -215,7 +220,13 @@ class GivenByDimensions(Statement, ABC):
                 if abs(stated - apart) > AGREEMENT_TOLERANCE * max(stated, apart) + slack:
                     raise MechanismError(
                         "/skeleton/joints",
-                        f"{one} and {other} are {apart:.9g} apart; the dimensions give {stated:.9g}",
+                        compose(
+                            "mechanisms-skeleton-contradicts-dimensions",
+                            first=one,
+                            second=other,
+                            distance=f"{apart:.9g}",
+                            expected=f"{stated:.9g}",
+                        ),
                     )
         # Return the skeleton, because it has joints that the dimensions lack.
         return assembled

@@ -12,6 +12,7 @@ from pydantic import Field
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.catalogue import ASSEMBLY_SIGNS
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
+from kinematics.message import compose
 from synthesis.mechanisms.base import (
     MechanismError,
     assemble_at_reference,
@@ -50,9 +51,8 @@ class GivenSliderCrank(GivenByDimensions):
         line = complex(*self.slide.point)
         # Textbooks differ in the sign of the offset, so compare its magnitude; the slide determines the side.
         offset = None if self.offset is None else abs(self.offset)
-        require_agreement(
-            "/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot"
-        )
+        measured = abs(((pivot - line) * cmath.exp(-1j * angle)).imag)
+        require_agreement("/offset", offset, measured, "mechanisms-slide-gives-other-offset")
         return assemble_at_reference(
             lambda at: catalogue.make_slider_crank(
                 pivot,
@@ -114,7 +114,7 @@ class GivenInvertedSliderCrank(GivenByDimensions):
         if self.coupler_point is not None:
             # The point's direction is relative to the line A → O4, which depends on the input angle.
             if self.reference_input_angle is None:
-                raise MechanismError("/reference_input_angle", "missing: it defines the direction of the coupler point")
+                raise MechanismError("/reference_input_angle", compose("mechanisms-coupler-point-undirected"))
             return self._add_body(
                 assemble_at_reference(self._assemble_at, self.reference_input_angle, ()), self.coupler_point.vector
             )
@@ -127,7 +127,7 @@ class GivenInvertedSliderCrank(GivenByDimensions):
         """Add the link that carries P and slides on the output; ``local`` is P relative to the line A → O4."""
         o2, o4, a = (complex(bare.joints[joint]) for joint in ("O2", "O4", "A"))
         if a == o4:
-            raise MechanismError("/reference_input_angle", "the crank pin is on O4; the coupler point has no direction")
+            raise MechanismError("/reference_input_angle", compose("mechanisms-coupler-point-on-pivot"))
         p = a + local * (o4 - a) / abs(o4 - a)
         return Mechanism(
             {"O2": o2, "O4": o4, "A": a, "P": p},
@@ -175,7 +175,7 @@ class GivenQuickReturn(GivenByDimensions):
         if (self.links.crank > abs(o4 - o2)) != (self.type == "whitworth"):
             raise MechanismError(
                 "/links/crank",
-                "a crank-shaper needs a crank shorter than the ground, a Whitworth mechanism a longer one",
+                compose("mechanisms-quick-return-crank-length"),
             )
         return assemble_at_reference(
             lambda angle: catalogue.make_quick_return(

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import LENGTH
 from synthesis.model.problem import Count, NonNegative, PositiveLength, Statement
 
@@ -41,7 +42,7 @@ class LayoutSizes(Statement):
     def _validate_diameter(cls, diameter: float, info: ValidationInfo) -> float:
         # Infinite if the width itself failed validation: one error is enough.
         if diameter > info.data.get("link_width", math.inf):
-            raise ValueError("pin_diameter must not exceed link_width")
+            raise ValueError(compose("model-pin-wider-than-link"))
         return diameter
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, LENGTH, DimensionedModel
 
 MAX_MAGNITUDE = 1e9
@@ -77,21 +78,21 @@ class Range(Statement):
     def _validate_order(self) -> Self:
         least, most = getattr(self, "min", None), getattr(self, "max", None)
         if least is None and most is None:
-            raise ValueError("give min, max or both")
+            raise ValueError(compose("model-range-empty"))
         if least is not None and most is not None and least > most:
-            raise ValueError("min must not exceed max")
+            raise ValueError(compose("model-min-above-max"))
         return self
 
 
 def _validate_interval(interval: tuple[float, float]) -> tuple[float, float]:
     if interval[0] >= interval[1]:
-        raise ValueError("the lower end must be below the upper end")
+        raise ValueError(compose("model-interval-reversed"))
     return interval
 
 
 def _require_coordinate(point: tuple[float | None, float | None]) -> tuple[float | None, float | None]:
     if point == (None, None):
-        raise ValueError("give at least one coordinate, or leave the point out")
+        raise ValueError(compose("model-point-without-coordinate"))
     return point
 
 

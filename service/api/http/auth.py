@@ -11,6 +11,7 @@ import structlog
 from fastapi import Depends, Request, Response
 from fastapi.routing import APIRoute
 
+from kinematics.message import compose
 from service.access.gate import ANYBODY, Gate, NoKey, TooOften
 from service.api.http.problem_details import Refusal
 from service.observability import telemetry
@@ -48,23 +49,22 @@ async def _check_admission(request: Request) -> str:
     except NoKey as refusal:
         # The challenge names an error only if a key was sent (RFC 6750, section 3).
         raise Refusal(
-            401, "unauthorized", "Unauthorized",
-            "The API key is not valid." if refusal.given else "Send an API key: `Authorization: Bearer mechsynth_...`.",
+            401, "unauthorized", "service-title-unauthorized",
+            compose("service-key-invalid" if refusal.given else "service-key-missing"),
             headers={"WWW-Authenticate": 'Bearer error="invalid_token"' if refusal.given else "Bearer"},
         ) from None  # fmt: skip
     except TooOften as refusal:
         allowance = refusal.allowance
         telemetry.add_headers(allowance.format_headers())
         raise Refusal(
-            429, "rate-limited", "Rate limited",
-            f"This key has reached its limit of {allowance.limit} requests in {allowance.window_s} seconds.",
+            429, "rate-limited", "service-title-rate-limited",
+            compose("service-rate-limit-reached", requests=allowance.limit, seconds=allowance.window_s),
             headers={"Retry-After": str(allowance.reset_s)},
         ) from None  # fmt: skip
     if tenant == ANYBODY and not _is_for_this_machine(request):
         raise Refusal(
-            403, "foreign-host", "Foreign host",
-            "Without API keys the service accepts only requests from this machine, addressed to a local host name. "
-            "`mechsynth keys create NAME` makes a key.",
+            403, "foreign-host", "service-title-foreign-host",
+            compose("service-host-foreign"),
         )  # fmt: skip
     if allowance is not None:
         telemetry.add_headers(allowance.format_headers())

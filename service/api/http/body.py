@@ -9,6 +9,7 @@ from fastapi import Request, Response
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect
 
+from kinematics.message import compose
 from service.api.http.auth import GuardedRoute, Handler
 from service.api.http.json_limits import locate_excess
 from service.api.http.problem_details import Refusal, refuse_invalid_request, refuse_malformed_json
@@ -36,7 +37,8 @@ class BoundedRequest(Request):
         """
         if self.headers.get("content-encoding", "identity").strip().lower() != "identity":
             raise Refusal(
-                415, "unsupported-media-type", "Unsupported media type", "The body must not be compressed.",
+                415, "unsupported-media-type", "service-title-unsupported-media-type",
+                compose("service-body-compressed"),
                 headers={"Accept-Encoding": "identity"},
             )  # fmt: skip
         # The header is only a claim, but a body announced as too large need not be read at all. Longer numbers than 18
@@ -53,7 +55,7 @@ class BoundedRequest(Request):
         except ClientDisconnect:
             # The client is gone and cannot read this answer, which ends the request without logging a defect.
             raise Refusal(
-                400, "incomplete-body", "Incomplete body", "The connection was closed before the end of the body."
+                400, "incomplete-body", "service-title-incomplete-body", compose("service-body-incomplete")
             ) from None
         return bytes(body)
 
@@ -66,7 +68,11 @@ class BoundedRequest(Request):
 def refuse_media_type(detail: str, *accepted: str) -> Refusal:
     """Build the refusal of a body of another type than the ``accepted`` ones."""
     return Refusal(
-        415, "unsupported-media-type", "Unsupported media type", detail, headers={"Accept": ", ".join(accepted)}
+        415,
+        "unsupported-media-type",
+        "service-title-unsupported-media-type",
+        detail,
+        headers={"Accept": ", ".join(accepted)},
     )
 
 
@@ -84,7 +90,7 @@ class JsonRequest(BoundedRequest):
             413, 415 or 400, as documented for the endpoints that take a body.
         """
         if self.media_type != "application/json":
-            raise refuse_media_type("The body must be application/json.", "application/json")
+            raise refuse_media_type(compose("service-body-not-json"), "application/json")
         self._body = await self.read_limited(limit)
         self._checked = _parse_body(self._body)
 
@@ -113,7 +119,7 @@ class JsonRoute(GuardedRoute):
 def _refuse_large_body(limit: int) -> Refusal:
     # The rest of the body stays unread, so the connection cannot serve another request.
     return Refusal(
-        413, "body-too-large", "Body too large", f"The body must have at most {limit} bytes.",
+        413, "body-too-large", "service-title-body-too-large", compose("service-body-too-large", count=limit),
         headers={"Connection": "close"},
     )  # fmt: skip
 
@@ -126,14 +132,15 @@ def _parse_body(body: bytes) -> object:
         parsed = from_json(body)
     except ValueError as error:
         # The message is the parser's own, "expected `:` at line 1 column 8", without parts of the input.
-        detail = f"The body is not valid JSON: {error}."
+        detail = compose("service-body-malformed", reason=str(error))
         raise refuse_malformed_json(detail, _find_depth_faults(body) if "recursion" in str(error) else ()) from None
     values, keys = _count_values(parsed)
     if values > MAX_VALUES:
         raise _refuse_many_values(body)
     if _count_keys(body) != keys:
         # The parser keeps the last of equal keys silently; only then is the slower search for them necessary.
-        twice = [(place, "This key occurs twice; give it once.") for place in _find_duplicate_keys(body)]
+        detail = compose("service-key-twice")
+        twice = [(place, detail) for place in _find_duplicate_keys(body)]
         if twice:
             raise refuse_invalid_request(twice)
     return parsed
@@ -141,9 +148,9 @@ def _parse_body(body: bytes) -> object:
 
 def _refuse_many_values(body: bytes) -> Refusal:
     where = locate_excess(body, MAX_VALUES, MAX_DEPTH)
-    detail = f"Up to here the body has more than {MAX_VALUES} values; the limit is {MAX_VALUES}."
+    detail = compose("service-too-many-values-here", count=MAX_VALUES)
     return Refusal(
-        422, "invalid-request", "Invalid request", f"The body has more than {MAX_VALUES} values.",
+        422, "invalid-request", "service-title-invalid-request", compose("service-too-many-values", count=MAX_VALUES),
         errors=[(where, detail)],
     )  # fmt: skip
 
@@ -151,7 +158,7 @@ def _refuse_many_values(body: bytes) -> Refusal:
 def _find_depth_faults(body: bytes) -> list[tuple[str, str]]:
     """Return the fault of an unparsable body that is nested too deeply, with its place; empty for any other fault."""
     where = locate_excess(body, len(body), MAX_DEPTH)
-    return [(where, f"This is nested more than {MAX_DEPTH} levels deep.")] if where else []
+    return [(where, compose("service-nested-too-deeply", count=MAX_DEPTH))] if where else []
 
 
 def _has_more_values_than(body: bytes, limit: int) -> bool:

@@ -7,6 +7,7 @@ from typing import TypeVar
 
 from fastapi import Request, Response
 
+from kinematics.message import compose
 from service.answers.desk import CPU_S, DRAWING_CPU_S, AnswerDesk
 from service.answers.process import GZIP_MARK, compute_packed
 from service.api.http.cached_representation import GZIP, is_gzip_accepted
@@ -41,11 +42,14 @@ async def respond_with_analysis(
             content = await answers.analyse(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
         # 422: the client has sent this mechanism and can make it smaller.
-        limit = f"time limit of {CPU_S:g} s" if error.of == "time" else "memory limit"
-        detail = f"The analysis exceeded its {limit}; check all sizes and counts."
+        detail = (
+            compose("service-analysis-exceeds-time", seconds=f"{CPU_S:g}")
+            if error.of == "time"
+            else compose("service-analysis-exceeds-memory")
+        )
         raise refuse_invalid_mechanism([("/mechanism", detail)]) from None
     except Busy:
-        raise (refuse_busy("analyses") if answers.is_loaded else refuse_compiling()) from None
+        raise (refuse_busy("service-busy-with-analyses") if answers.is_loaded else refuse_compiling()) from None
     except ClientGone:
         raise refuse_gone() from None
     except Refusal as refusal:
@@ -66,10 +70,14 @@ async def draw_in_turn(request: Request, answers: AnswerDesk, tenant: str, work:
         return await answers.draw(request.is_disconnected, tenant, work, *args)
     except GivenUp as error:
         # 409: the design is stored, and no change of the request makes it smaller.
-        limit = f"time limit of {DRAWING_CPU_S:g} s" if error.of == "time" else "memory limit"
-        raise Refusal(409, "no-drawing", "No drawing", f"The drawing exceeded its {limit}.") from None
+        detail = (
+            compose("service-drawing-exceeds-time", seconds=f"{DRAWING_CPU_S:g}")
+            if error.of == "time"
+            else compose("service-drawing-exceeds-memory")
+        )
+        raise Refusal(409, "no-drawing", "service-title-no-drawing", detail) from None
     except Busy:
-        raise refuse_busy("drawings") from None
+        raise refuse_busy("service-busy-with-drawings") from None
     except ClientGone:
         raise refuse_gone() from None
     except Refusal as refusal:

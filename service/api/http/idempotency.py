@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel
 
+from kinematics.message import compose
 from service.api.http.problem_details import Refusal, refuse_invalid_request
 from service.jobs.store.admission import Repeatable
 
@@ -29,7 +30,7 @@ def read_repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
     if not keys:
         return None
     if len(keys) > 1:
-        raise refuse_invalid_request([("/header/idempotency-key", "Send only one `Idempotency-Key`.")])
+        raise refuse_invalid_request([("/header/idempotency-key", compose("service-idempotency-key-twice"))])
     # The validated body, not its bytes: an equal problem written differently is the same request.
     stated = body.model_dump(mode="json", exclude_defaults=True)
     canonical = json.dumps(stated, sort_keys=True, separators=(",", ":"))
@@ -39,6 +40,6 @@ def read_repeatable(keys: Sequence[str], body: BaseModel) -> Repeatable | None:
 def refuse_reused_key() -> Refusal:
     """Build the refusal of a key that was used with a different body before."""
     return Refusal(
-        409, "idempotency-key-reused", "Idempotency key reused",
-        "A different request has used this `Idempotency-Key`. Use a new key for a new request.",
+        409, "idempotency-key-reused", "service-title-idempotency-key-reused",
+        compose("service-idempotency-key-used"),
     )  # fmt: skip

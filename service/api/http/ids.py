@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import re
 
+from kinematics.message import compose
 from service.api.http.problem_details import refuse_invalid_request
 
 ULID_PATTERN = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
@@ -24,5 +25,5 @@ def decode_cursor(cursor: str) -> str:
     except ValueError:
         last_id = ""
     if not ULID_PATTERN.fullmatch(last_id):
-        raise refuse_invalid_request([("/query/cursor", "Expected a `next_cursor` of this service.")])
+        raise refuse_invalid_request([("/query/cursor", compose("service-cursor-unknown"))])
     return last_id

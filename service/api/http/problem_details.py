@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
+from kinematics.message import compose
 from service.error_messages import MAX_FAULTS, Models
 from service.jobs.store.database import is_unreachable
 from service.observability import telemetry
@@ -96,25 +97,24 @@ class ProblemDetails(BaseModel):
 
 def refuse_malformed_json(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
     """Build the refusal of a body that cannot be parsed as JSON; ``errors`` are pairs of path and detail."""
-    return Refusal(400, "malformed-json", "Malformed JSON", detail, errors=errors)
+    return Refusal(400, "malformed-json", "service-title-malformed-json", detail, errors=errors)
 
 
 def refuse_malformed_drawing(detail: str) -> Refusal:
     """Build the refusal of a body that cannot be read as a drawing."""
-    return Refusal(400, "malformed-drawing", "Malformed drawing", detail)
+    return Refusal(400, "malformed-drawing", "service-title-malformed-drawing", detail)
 
 
 def refuse_invalid_drawing(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
     """Build the refusal of a drawing without usable outlines; ``errors`` are pairs of element and detail."""
-    return Refusal(422, "invalid-drawing", "Invalid drawing", detail, errors=errors)
+    return Refusal(422, "invalid-drawing", "service-title-invalid-drawing", detail, errors=errors)
 
 
 def refuse_without_store() -> Refusal:
     """Build the refusal for a job store that does not answer."""
     return Refusal(
-        503, "store-unavailable", "Store unavailable",
-        "The job store does not answer. Send the request again later; with an `Idempotency-Key` this creates at most "
-        "one job.",
+        503, "store-unavailable", "service-title-store-unavailable",
+        compose("service-store-unavailable"),
         headers={"Retry-After": str(STORE_RETRY_AFTER_S)},
     )  # fmt: skip
 
@@ -122,16 +122,16 @@ def refuse_without_store() -> Refusal:
 def refuse_full_queue() -> Refusal:
     """Build the refusal for a full queue."""
     return Refusal(
-        503, "queue-full", "Queue full",
-        "Your queue has reached its maximum number of jobs. Send the request again later.",
+        503, "queue-full", "service-title-queue-full",
+        compose("service-queue-full"),
         headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
     )  # fmt: skip
 
 
-def refuse_busy(with_what: str) -> Refusal:
-    """Build the refusal of a request that did not get its turn because of others of the same sort."""
+def refuse_busy(message_id: str) -> Refusal:
+    """Build the refusal of a request that did not get its turn because of others, which the message names."""
     return Refusal(
-        503, "busy", "Busy", f"The service is busy with other {with_what}. Send the request again.",
+        503, "busy", "service-title-busy", compose(message_id),
         headers={"Retry-After": "5"},
     )  # fmt: skip
 
@@ -139,14 +139,14 @@ def refuse_busy(with_what: str) -> Refusal:
 def refuse_gone() -> Refusal:
     """Build the refusal for a client that has disconnected; it appears only in the log and the metrics."""
     # HTTP has no status for this; 499 is nginx's.
-    return Refusal(499, "gone", "Gone", "The client has disconnected.")
+    return Refusal(499, "gone", "service-title-gone", compose("service-client-gone"))
 
 
 def refuse_compiling() -> Refusal:
     """Build the refusal for the time after an installation when the kernels of analyses are compiled."""
     return Refusal(
-        503, "busy", "Busy",
-        "The kernels for analyses are being compiled, once after the installation. `/readyz` reports the progress.",
+        503, "busy", "service-title-busy",
+        compose("service-kernels-compiling"),
         headers={"Retry-After": "5"},
     )  # fmt: skip
 
@@ -202,17 +202,24 @@ async def _respond_to_http_error(request: Request, error: Exception) -> Response
     assert isinstance(error, HTTPException)
     # The framework's own errors: no route has this path, or none has this method.
     if error.status_code == 404:
-        return _build_response(request, 404, "/problems/not-found", "Not found", "No such resource; check the path.")
+        return _build_response(
+            request, 404, "/problems/not-found", compose("service-title-not-found"), compose("service-path-unknown")
+        )
     if error.status_code == 405:
         allowed = _list_allowed_methods(request)
-        detail = f"This path does not allow {_name_method(request)}; it allows {', '.join(allowed)}."
+        detail = _describe_methods(request, ", ".join(allowed))
         headers = {"Allow": ", ".join(allowed)}
         return _build_response(
-            request, 405, "/problems/method-not-allowed", "Method not allowed", detail, headers=headers
+            request,
+            405,
+            "/problems/method-not-allowed",
+            compose("service-title-method-not-allowed"),
+            detail,
+            headers=headers,
         )
     return _build_response(
-        request, error.status_code, "/problems/http-error", "HTTP error", "The request cannot be served.",
-        headers=error.headers,
+        request, error.status_code, "/problems/http-error", compose("service-title-http-error"),
+        compose("service-request-not-served"), headers=error.headers,
     )  # fmt: skip
 
 
@@ -226,8 +233,8 @@ async def _respond_to_store_error(request: Request, error: Exception) -> Respons
 
 async def _respond_to_defect(request: Request, _error: Exception) -> Response:
     # The server logs the exception with its traceback afterwards; the client must not see it.
-    detail = "The request failed because of a defect of the service; its log has the details."
-    return _build_response(request, 500, "/problems/internal-error", "Internal error", detail)
+    detail = compose("service-request-failed")
+    return _build_response(request, 500, "/problems/internal-error", compose("service-title-internal-error"), detail)
 
 
 def _build_response(
@@ -253,10 +260,12 @@ def _build_response(
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 
-def _name_method(request: Request) -> str:
+def _describe_methods(request: Request, allowed: str) -> str:
     # An unknown method is text from the client and must not be repeated.
     known = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
-    return request.method if request.method in known else "this method"
+    if request.method in known:
+        return compose("service-method-not-allowed", method=request.method, methods=allowed)
+    return compose("service-unknown-method-not-allowed", methods=allowed)
 
 
 def _list_allowed_methods(request: Request) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Union
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import from_json, to_json
 
-from kinematics.message import SOURCE_LANGUAGE, get_language
+from kinematics.message import SOURCE_LANGUAGE, compose, get_language
 from service.api.http.problem_details import ProblemDetails
 from service.jobs.store.progress_message import read_progress
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
@@ -31,7 +31,7 @@ Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, exam
 def _check_printable(label: str) -> str:
     if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
         # PostgreSQL cannot store NUL, and UTF-8 cannot encode surrogates.
-        raise ValueError("the label must not contain NUL or lone surrogates")
+        raise ValueError(compose("service-label-unprintable"))
     return label
 
 

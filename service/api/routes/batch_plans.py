@@ -8,9 +8,10 @@ import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
+from kinematics.message import compose, join_messages
 from service.api.http.problem_details import Refusal, refuse_invalid_problem, refuse_invalid_request
 from service.api.routes.batch_schemas import MAX_SAMPLES, BatchRequest, Vary
-from service.error_messages import MAX_FAULTS, format_pointer
+from service.error_messages import MAX_FAULTS, format_pointer, is_unknown_field
 from service.jobs.batches.plan import NoSuchPlace, Plan, split_pointer
 from service.jobs.batches.sampling import Span, sample_evenly, sample_latin_hypercube
 from service.jobs.batches.values import PickedValues, Values
@@ -56,7 +57,7 @@ def build_plan(body: BatchRequest) -> tuple[str, Plan, Cost]:
     kind = body.problem.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         # The kind selects the model, so nothing else can be checked without it.
-        detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
+        detail = compose("service-kind-unknown", names=", ".join(KINDS))
         raise refuse_invalid_problem([("/problem/kind", detail)])
     # The plan is stored as JSON, which has no such numbers.
     faults = [*islice(_find_nonfinite_numbers(body), MAX_FAULTS)]
@@ -101,7 +102,7 @@ def _find_nonfinite_numbers(body: BatchRequest) -> Iterator[tuple[str, str]]:
     while pending:
         place, value = pending.pop()
         if isinstance(value, float) and not math.isfinite(value):
-            yield format_pointer(place), "This must be a finite number."
+            yield format_pointer(place), compose("service-number-not-finite")
         elif isinstance(value, dict | list):
             # Reversed, because a stack returns the last entry first: faults come in the order of the request.
             inside = value.items() if isinstance(value, dict) else enumerate(value)
@@ -139,42 +140,42 @@ def _find_field_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
     ways = [split_pointer(varied.field) for varied in body.vary]
     for k, way in enumerate(ways):
         if way == ["kind"]:
-            yield f"/vary/{k}/field", "All problems of a batch have the same kind; `kind` cannot be varied."
+            yield f"/vary/{k}/field", compose("service-batch-kind-varied")
         for other in ways[:k]:
             # If one field lies inside the other, the result would depend on the order in which they are set.
             if way[: len(other)] == other or other[: len(way)] == way:
-                yield f"/vary/{k}/field", "This field is already varied, as a whole or in part."
+                yield f"/vary/{k}/field", compose("service-field-varied-twice")
 
 
 def _find_sampling_faults(body: BatchRequest) -> Iterator[tuple[str, str]]:
     drawn = body.sampling == "latin_hypercube"
     if drawn and body.samples is None:
-        yield "/samples", "A Latin hypercube needs `samples`, the number of problems."
+        yield "/samples", compose("service-hypercube-needs-samples")
     if not drawn and body.samples is not None:
-        yield "/samples", f"The values determine the number of problems of a {body.sampling}; omit `samples`."
+        yield "/samples", compose("service-sampling-without-samples", sampling=body.sampling)
     if not drawn and body.seed != 0:
-        yield "/seed", f"A {body.sampling} has no random draws; omit `seed`."
+        yield "/seed", compose("service-sampling-without-seed", sampling=body.sampling)
     counts = []
     for k, varied in enumerate(body.vary):
         if drawn and varied.count is not None:
-            yield f"/vary/{k}/count", "A Latin hypercube has one value for each of its `samples`; omit `count`."
+            yield f"/vary/{k}/count", compose("service-hypercube-without-count")
         if not drawn and varied.values is None and varied.count is None:
-            yield f"/vary/{k}", "Give `count`, the number of values."
+            yield f"/vary/{k}", compose("service-count-missing")
         counts.append(len(varied.values) if varied.values is not None else varied.count or 1)
     if body.sampling == "zip":
         for k, count in enumerate(counts):
             if count != counts[0]:
                 yield (
                     f"/vary/{k}",
-                    f"In a zip all fields need the same number of values; the first field has {counts[0]}.",
+                    compose("service-zip-counts-differ", count=counts[0]),
                 )
     total = math.prod(counts) if body.sampling == "grid" else body.samples or counts[0]
     if total > MAX_SAMPLES:
-        yield "/vary", f"These values give {total} problems; a batch can have at most {MAX_SAMPLES}."
+        yield "/vary", compose("service-batch-too-large", count=total, most=MAX_SAMPLES)
     elif total * sum(map(_measure_value_bytes, body.vary)) > MAX_TABLE_BYTES:
         yield (
             "/vary",
-            f"The values of {total} problems exceed {MAX_TABLE_BYTES >> 20} MiB; give fewer or shorter values.",
+            compose("service-batch-values-too-long", count=total, size=MAX_TABLE_BYTES >> 20),
         )
 
 
@@ -186,9 +187,9 @@ def _find_metric_faults(body: BatchRequest, kind: str) -> Iterator[tuple[str, st
     known = KINDS[kind].metrics
     for k, name in enumerate(body.metrics or ()):
         if name not in known:
-            yield f"/metrics/{k}", f"Unknown metric; this kind has {', '.join(known)}."
+            yield f"/metrics/{k}", compose("service-metric-unknown", metrics=", ".join(known))
         elif name in (body.metrics or ())[:k]:
-            yield f"/metrics/{k}", "This metric is given twice; give it once."
+            yield f"/metrics/{k}", compose("service-metric-twice")
 
 
 def _build_values(body: BatchRequest) -> list[Values]:
@@ -232,12 +233,12 @@ def _find_value_faults(body: BatchRequest, kind: str, plan: Plan, until: float) 
             for k, field in enumerate(plan.fields):
                 if k in places and (path == field or path.startswith(f"{field}/")):
                     given = body.vary[k].values is not None
-                    unknown = detail.startswith("Unknown field")
+                    unknown = is_unknown_field(detail)
                     inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
                     place = "/field" if unknown and path == field else inside
                     # Values computed from a range have no place in the request, so the message names the value.
-                    shown = "" if given or unknown else f" The value is {values[k]}."
-                    found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
+                    shown = "" if given or unknown else compose("service-value-is", value=str(values[k]))
+                    found[f"/vary/{k}{place}", join_messages([detail, shown])] = None
         if len(found) > MAX_FAULTS:
             break
     return list(found)

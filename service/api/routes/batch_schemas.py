@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import to_json
 
+from kinematics.message import compose
 from service.api.http.schemas import Label, Progress, Timestamp
 from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.store.states import Status
@@ -68,7 +69,7 @@ class Vary(BaseModel):
     def _check_source(self) -> Self:
         ranged = self.from_ is not None and self.to is not None
         if ranged == (self.values is not None) or (self.values is not None and self.model_fields_set & _RANGE_FIELDS):
-            raise ValueError("give either values, or from and to")
+            raise ValueError(compose("service-values-or-range"))
         return self
 
 
@@ -178,7 +179,9 @@ class BatchFront(BatchTable):
 def describe_batch(batch: BatchSummary) -> JsonObject:
     """Return a batch as :class:`BatchListItem`."""
     done = batch.ended_count
-    message = f"{done} of {batch.total}" if batch.status == Status.RUNNING else batch.status.value
+    message = batch.status.value
+    if batch.status == Status.RUNNING:
+        message = compose("service-batch-progress", done=done, total=batch.total)
     return {
         "id": batch.id,
         "kind": batch.kind,

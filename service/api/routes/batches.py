@@ -11,6 +11,7 @@ from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import StreamingResponse
 
+from kinematics.message import compose
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.body import JsonRoute
@@ -183,7 +184,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     """Cancel an unfinished batch; remove a finished one."""
     batch = await desk.cancel_or_delete(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise refuse_not_found(NO_BATCH)
+        raise refuse_not_found(compose("service-batch-unknown"))
     return Response(status_code=204) if batch == "deleted" else as_json(dump_batch(batch), 202)
 
 
@@ -281,35 +282,42 @@ async def follow_batch(
     ] = None,
 ) -> Response:
     """Stream the progress of the batch as server-sent events."""
-    return await stream_events(request, poller, tenant, batch_id, last_event_id, describe_batch, NO_BATCH)
+    return await stream_events(
+        request, poller, tenant, batch_id, last_event_id, describe_batch, "service-batch-unknown"
+    )
 
 
 async def _find_batch(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
     batch = await desk.get(tenant, batch_id) if ULID_PATTERN.fullmatch(batch_id) else None
     if batch is None:
-        raise refuse_not_found(NO_BATCH)
+        raise refuse_not_found(compose("service-batch-unknown"))
     return batch
 
 
 async def _load_table(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
     tabulated = await desk.load_table(await _find_batch(desk, tenant, batch_id))
     if tabulated is None:
-        raise refuse_not_found(NO_BATCH)
+        raise refuse_not_found(compose("service-batch-unknown"))
     return tabulated
 
 
 def _select_quantities(weighed: FrontQuery, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return the names of the metrics to minimize and to maximize; raise a refusal if the request is invalid."""
     faults = []
+    unknown = (
+        compose("service-batch-metric-unknown", metrics=", ".join(metrics))
+        if metrics
+        else compose("service-batch-without-metrics")
+    )
     for k, name in enumerate([*weighed.least, *weighed.greatest]):
         place = "/query/least" if k < len(weighed.least) else "/query/greatest"
         if name not in metrics:
-            faults.append((place, f"Unknown metric; this batch has {', '.join(metrics) or 'none'}."))
+            faults.append((place, unknown))
         elif name in [*weighed.least, *weighed.greatest][:k]:
-            faults.append((place, f"{name} is named twice; minimize or maximize it once."))
+            faults.append((place, compose("service-metric-weighed-twice", metric=name)))
     usual = [] if weighed.least or weighed.greatest else select_default_metrics(metrics)
     if not (weighed.least or weighed.greatest or usual):
-        faults.append(("/query/least", "Name a metric to minimize (`least`) or to maximize (`greatest`)."))
+        faults.append(("/query/least", compose("service-metric-missing")))
     if faults:
         raise refuse_invalid_request(faults)
     if usual:

@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from kinematics.message import compose
 from service.answers.designs import draw_design
 from service.answers.designs import move_design as compute_motion
 from service.answers.job_result import SolvedJob
@@ -155,9 +156,13 @@ async def get_job_with_result(desk: JobDesk, tenant: str, job_id: str) -> tuple[
     """
     job = await find_job(desk, tenant, job_id)
     if job.result is None:
-        what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
+        detail = (
+            compose("service-job-ended-without-result", status=job.status.value)
+            if job.status.finished
+            else compose("service-job-without-result-yet")
+        )
         # Not 404: the job exists, and while it runs it may still get a result.
-        raise Refusal(409, "no-result", "No result", f"The job {what}.")
+        raise Refusal(409, "no-result", "service-title-no-result", detail)
     return job, job.result
 
 

@@ -14,6 +14,7 @@ from fastapi import APIRouter, Header, Request, Response
 from fastapi.sse import EventSourceResponse, format_sse_event
 from pydantic_core import to_json
 
+from kinematics.message import compose
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.dependencies import Poller
@@ -97,7 +98,7 @@ async def follow_job(
 
     A broken stream can be resumed with `Last-Event-ID`; events that the client has are not repeated.
     """
-    return await stream_events(request, poller, tenant, job_id, last_event_id, describe_job, NO_JOB)
+    return await stream_events(request, poller, tenant, job_id, last_event_id, describe_job, "service-job-unknown")
 
 
 async def stream_events(
@@ -107,7 +108,7 @@ async def stream_events(
     id_: str,
     last_event_id: str | None,
     shown: Callable[[F], JsonObject],
-    none_such: str,
+    unknown_id: str,
 ) -> Response:
     """Return the event stream of a job or batch; ``shown`` converts it to JSON-like data with its ``progress``.
 
@@ -119,12 +120,12 @@ async def stream_events(
     # Every stream keeps a connection open; one tenant must not use up those of all.
     if poller.count_listeners(tenant) >= MAX_LISTENERS:
         raise Refusal(
-            503, "too-many-listeners", "Too many listeners", "Too many of your clients are listening; try again.",
+            503, "too-many-listeners", "service-title-too-many-listeners", compose("service-too-many-listeners"),
             headers={"Retry-After": "5"},
         )  # fmt: skip
     job = await _read_current(poller, id_, tenant) if ULID_PATTERN.fullmatch(id_) else None
     if job is None or job.tenant != tenant:
-        raise refuse_not_found(none_such)
+        raise refuse_not_found(compose(unknown_id))
     seen = _parse_event_id(last_event_id)
     # The client has the last event; a stream without events would make browsers reconnect for ever.
     if job.status.finished and seen == (job.revision, job.status):

@@ -33,7 +33,7 @@ async def readyz(request: Request) -> Readiness:
     """
     missing = await request.app.state.desk.check_readiness()
     if missing is not None:
-        raise Refusal(503, "not-ready", "Not ready", missing, headers={"Retry-After": "1"})
+        raise Refusal(503, "not-ready", "service-title-not-ready", missing, headers={"Retry-After": "1"})
     progress = request.app.state.kernels.progress
     kernels = None if progress is None else Kernels(compiled=progress.compiled, total=progress.total)
     return Readiness(status="ok", kernels=kernels)

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from kinematics.message import compose
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
 from service.api.http.body import BoundedRequest, refuse_media_type
@@ -56,7 +57,7 @@ async def read_file(request: Request, types: tuple[str, ...]) -> tuple[bytes, st
     """
     bounded = BoundedRequest(request.scope, request.receive)
     if bounded.media_type and bounded.media_type not in types:
-        raise refuse_media_type(f"The body must have one of these types: {', '.join(types)}.", *types)
+        raise refuse_media_type(compose("service-file-type-foreign", types=", ".join(types)), *types)
     return await bounded.read_limited(request.app.state.settings.max_body_bytes), bounded.media_type
 
 
@@ -74,7 +75,7 @@ async def respond_with_reading(
         with measure_span("drawing"):
             return as_json(await desk.read(request.is_disconnected, tenant, door, content, **asked))
     except Busy:
-        raise refuse_busy("files") from None
+        raise refuse_busy("service-busy-with-files") from None
     except ClientGone:
         raise refuse_gone() from None
     except ForeignFormat as error:
@@ -148,7 +149,7 @@ async def import_curves(
     content, media_type = await read_file(request, ACCEPTED_TYPES)
     # An option without effect is refused, so that no mistake passes unnoticed.
     if pixel_size is not None and not content.startswith(PNG_SIGNATURE):
-        raise refuse_invalid_request([("/query/pixel_size", "Only a PNG picture has pixels; omit `pixel_size`.")])
+        raise refuse_invalid_request([("/query/pixel_size", compose("service-pixels-without-picture"))])
     return await respond_with_reading(
         request,
         desk,

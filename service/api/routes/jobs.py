@@ -8,6 +8,7 @@ from fastapi import APIRouter, Body, Header, Query, Request, Response
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 
+from kinematics.message import compose
 from service.api.http import problem_details
 from service.api.http.auth import Tenant
 from service.api.http.body import JsonRoute
@@ -37,7 +38,7 @@ router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
 def _check_kind(kind: str) -> str:
     if kind not in KINDS:
-        raise ValueError(f"unknown kind; the kinds are {', '.join(KINDS)}")
+        raise ValueError(compose("service-filter-kind-unknown", kinds=", ".join(KINDS)))
     return kind
 
 
@@ -226,10 +227,10 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
         job = await desk.cancel_or_delete(tenant, job_id) if ULID_PATTERN.fullmatch(job_id) else None
     except PartOfBatch as part:
         raise Refusal(
-            409, "part-of-batch", "Part of a batch", f"The job belongs to a batch; remove /v1/batches/{part.batch}."
+            409, "part-of-batch", "service-title-part-of-batch", compose("service-job-part-of-batch", batch=part.batch)
         ) from None
     if job is None:
-        raise refuse_not_found(NO_JOB)
+        raise refuse_not_found(compose("service-job-unknown"))
     # A running job is only stopped by its worker after this answer, hence 202.
     return Response(status_code=204) if job == "deleted" else as_json(dump_job(job), 202)
 
@@ -245,5 +246,5 @@ async def find_job(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     # The job of another tenant is answered like one that never existed.
     job = await desk.get(tenant, job_id) if ULID_PATTERN.fullmatch(job_id) else None
     if job is None:
-        raise refuse_not_found(NO_JOB)
+        raise refuse_not_found(compose("service-job-unknown"))
     return job

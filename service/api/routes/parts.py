@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
+from kinematics.message import compose, join_messages
 from service.answers.job_result import SolvedJob, parse_design_index
 from service.api.http import problem_details
 from service.api.http.auth import GuardedRoute, Tenant
@@ -205,7 +206,7 @@ async def draw_assemblies(request: Request, bench: Workshop, tenant: str, job: S
             # A design without parts does not prevent a report.
             if refusal.status not in (409, 422):
                 raise
-            found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
+            found[n] = join_messages(detail for _, detail in refusal.errors) or refusal.detail
     return found
 
 
@@ -233,8 +234,8 @@ async def _respond_with_file(
     if (file in SOLID_FORMATS or (file == "zip" and query.process in CAD_PROCESSES)) and not is_installed():
         # 501: another installation of the service can do it, and no change of this design helps.
         raise Refusal(
-            501, "no-cad", "No CAD",
-            "Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.",
+            501, "no-cad", "service-title-no-cad",
+            compose("service-solids-unavailable"),
         )  # fmt: skip
     arguments = _build_arguments(job, n, query.model_dump(exclude_unset=True))
     with measure_span("parts"):
@@ -260,13 +261,11 @@ async def _make_content(
     try:
         made = await bench.run_cached(request.is_disconnected, tenant, work, *args)
     except Busy:
-        raise refuse_busy("parts") from None
+        raise refuse_busy("service-busy-with-parts") from None
     except ClientGone:
         raise refuse_gone() from None
     except GivenUp:
-        raise _refuse_parts(
-            f"Making the parts exceeded the limit of {MAX_PARTS_S:g} seconds or the memory limit of a job."
-        ) from None
+        raise _refuse_parts(compose("service-parts-exceed-limits", seconds=f"{MAX_PARTS_S:g}")) from None
     if isinstance(made, FileRefusal):
         if not made.known:
             raise refuse_not_found(made.detail)
@@ -282,4 +281,4 @@ def _check_design_number(result: str, number: str) -> int:
 
 
 def _refuse_parts(detail: str) -> Refusal:
-    return Refusal(409, "no-parts", "No parts", detail)
+    return Refusal(409, "no-parts", "service-title-no-parts", detail)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from kinematics.message import compose
 from service.jobs.batches.values import Values, decode_values, encode_values
 from synthesis.model.json_object import JsonObject
 
@@ -121,9 +122,9 @@ def _copy_with(value: object, way: Sequence[str], new: object) -> object:
     if isinstance(value, list):
         # At most nine digits are converted: int() of a very long text takes time by the square of its length.
         if not (step.isascii() and step.isdecimal() and str(int(step[:9])) == step):
-            raise NoSuchPlace(f"Expected the index of a list element, counted from 0; got {step[:100]!r}.")
+            raise NoSuchPlace(compose("service-index-expected", step=f"{step[:100]!r}"))
         if int(step) >= len(value):
-            raise NoSuchPlace(f"Element {step} does not exist; the length of the list is {len(value)}.")
+            raise NoSuchPlace(compose("service-element-missing", index=step, length=str(len(value))))
         place = int(step)
         return [*value[:place], _copy_with(value[place], rest, new), *value[place + 1 :]]
-    raise NoSuchPlace(f"The value before {step[:100]!r} is neither an object nor a list.")
+    raise NoSuchPlace(compose("service-place-without-members", step=f"{step[:100]!r}"))

@@ -13,10 +13,11 @@ from contextlib import contextmanager
 
 from numba.core import event
 
+from kinematics.message import compose
 from service.jobs.processes.stop_flag import Solving
 
-COMPILING_TEXT = "compiling what this is the first job to need"
-"""Progress message of a job during compilation."""
+COMPILING_ID = "service-compiling"
+"""Id of the progress message of a job during compilation."""
 
 _COMPILE_EVENT = "numba:compile"
 
@@ -54,7 +55,7 @@ class FirstUse(event.Listener):
             self._depth += 1
             if self._depth == 1:
                 self._solving.pause()
-                self._progress(self._last[0], COMPILING_TEXT)
+                self._progress(self._last[0], compose(COMPILING_ID))
 
     def on_end(self, event: event.Event) -> None:
         """Note the end of a compilation, successful or not."""

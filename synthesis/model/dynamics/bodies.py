@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import DENSITY, INERTIA, LENGTH, MASS
 from synthesis.model.problem import Degrees, NonNegative, Point, PositiveLength, PositiveNumber, Statement
 
@@ -17,6 +18,9 @@ MAX_CORNERS = 500
 Name = Annotated[str, Field(min_length=1, max_length=50)]
 
 Material = Literal["steel", "aluminium", "PETG"]
+
+_MISSING_SIZES = {"prism": "model-prism-needs-sizes", "cylinder": "model-cylinder-needs-diameter"}
+"""Messages for a part without the sizes of its form."""
 
 DENSITIES: dict[Material, float] = {"steel": 7850.0, "aluminium": 2700.0, "PETG": 1270.0}
 """Densities of materials, kg/m³."""
@@ -64,9 +68,9 @@ class Part(Statement):
         for form, names in needed.items():
             for name in names:
                 if (getattr(self, name) is None) == (form == self.form):
-                    raise ValueError(f"a {self.form} needs {' and '.join(needed[self.form])} besides its length")
+                    raise ValueError(compose(_MISSING_SIZES[self.form]))
         if self.bore > 0.0 and self.bore >= (self.diameter or 0.0):
-            raise ValueError("only a cylinder has a bore, and its bore must be smaller than its diameter")
+            raise ValueError(compose("model-bore-without-cylinder"))
         return self
 
 
@@ -107,24 +111,24 @@ class Shape(Statement):
     @model_validator(mode="after")
     def _require_form(self) -> Self:
         if (self.density is None) == (self.material is None):
-            raise ValueError("give a density or a material")
+            raise ValueError(compose("model-density-or-material"))
         return self
 
     @model_validator(mode="after")
     def _validate_plate(self) -> Self:
         if self.width is not None and self.polygon is not None:
-            raise ValueError("give a width or a polygon, not both")
+            raise ValueError(compose("model-width-and-polygon"))
         plate = self.width is not None or self.polygon is not None
         if not plate and not self.parts:
-            raise ValueError("give a width, a polygon, or parts")
+            raise ValueError(compose("model-shape-empty"))
         if plate != (self.thickness is not None):
-            raise ValueError("a plate, given by a width or a polygon, needs a thickness; parts have their own sizes")
+            raise ValueError(compose("model-plate-needs-thickness"))
         if not plate and self.holes:
-            raise ValueError("only a plate can have holes; give a width or a polygon")
+            raise ValueError(compose("model-holes-without-plate"))
         if self.ends == "square" and self.width is None:
-            raise ValueError("only a bar, given by a width, can have square ends")
+            raise ValueError(compose("model-square-ends-without-width"))
         if self.overhang > 0.0 and self.ends != "square":
-            raise ValueError("only square ends can have an overhang")
+            raise ValueError(compose("model-overhang-without-square-ends"))
         return self
 
 
@@ -167,12 +171,12 @@ class BodySpec(Statement):
         given: list[object] = [self.mass, self.cg, self.inertia]
         if self.shape is not None:
             if given != [None, None, None]:
-                raise ValueError("give the mass properties or a shape, not both")
+                raise ValueError(compose("model-mass-and-shape"))
             return self
         if self.mass is None:
-            raise ValueError("give a mass, or a shape")
+            raise ValueError(compose("model-mass-or-shape"))
         if self.mass > 0.0 and self.cg is None:
-            raise ValueError("a mass needs its centre of gravity, `cg`")
+            raise ValueError(compose("model-mass-without-cg"))
         return self
 
 

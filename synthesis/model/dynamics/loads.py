@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import FORCE, TORQUE
 from synthesis.model.dynamics.bodies import Name, Place
 from synthesis.model.problem import Count, Degrees, NonNegative, Number, PositiveLength, Statement
@@ -28,7 +29,7 @@ Turns = Annotated[Count, Field(ge=1, le=100)]
 def _validate_ascending(rows: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     for n, (row, following) in enumerate(pairwise(rows)):
         if not row[0] < following[0]:
-            raise ValueError(f"the first column must increase from row to row; row {n + 1} does not exceed row {n}")
+            raise ValueError(compose("model-rows-not-increasing", row=str(n + 1), previous=str(n)))
     return rows
 
 
@@ -50,10 +51,10 @@ def find_period_error(rows: Sequence[tuple[float, ...]], period: float) -> str |
     first, last = rows[0], rows[-1]
     span = last[0] - first[0]
     if span > period:
-        return f"the rows span {span:g}°, more than the {period:g}° after which they repeat"
+        return compose("model-table-exceeds-period", span=f"{span:g}", period=f"{period:g}")
     apart = max(abs(end - start) for start, end in zip(first[1:], last[1:], strict=True))
     if span == period and apart > CLOSURE_TOLERANCE * max(abs(value) for row in rows for value in row[1:]):
-        return "the last row lies one period after the first row and must have equal values"
+        return compose("model-table-ends-differ")
     return None
 
 
@@ -106,10 +107,10 @@ class _LoadCurve(Statement):
     def _validate_form(self, *forms: str) -> None:
         given = [name for name in forms if getattr(self, name) is not None]
         if len(given) != 1:
-            raise ValueError(f"give one of {', '.join(forms)}")
+            raise ValueError(compose("model-load-forms", fields=", ".join(forms)))
         stated = (self.by, self.interpolation, self.turns) != ("input_angle", "linear", None)
         if given != ["table"] and stated:
-            raise ValueError("only a table has by, interpolation and turns")
+            raise ValueError(compose("model-table-fields-without-table"))
 
 
 class ForceCurve(_LoadCurve):
@@ -159,17 +160,17 @@ class LoadSpec(Statement):
     @model_validator(mode="after")
     def _validate_place(self) -> Self:
         if (self.link is None) == (self.joint is None):
-            raise ValueError("a load acts on a link or on a joint; name one of them")
+            raise ValueError(compose("model-load-needs-place"))
         if (self.force is None) == (self.torque is None):
-            raise ValueError("a load is a force or a torque; give one of them")
+            raise ValueError(compose("model-load-needs-sort"))
         if self.torque is not None and self.link is None:
-            raise ValueError("a torque acts on a link, not on a joint")
+            raise ValueError(compose("model-torque-on-joint"))
         if (self.point is not None) != (self.link is not None and self.force is not None):
-            raise ValueError("a force on a link needs a point; a torque and a force on a joint have none")
+            raise ValueError(compose("model-load-point-misplaced"))
         if self.frame == "link" and self.point is None:
-            raise ValueError("only a force on a link can rotate with it")
+            raise ValueError(compose("model-load-frame-without-point"))
         if self.force is not None and self.joint is None:
             for form in ("against_motion", "gas"):
                 if getattr(self.force, form) is not None:
-                    raise ValueError(f"a force of the form {form} needs a joint")
+                    raise ValueError(compose("model-force-needs-joint", form=form))
         return self

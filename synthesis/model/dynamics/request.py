@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import GRAVITY, INERTIA, LENGTH, ROTATIONAL_SPEED
 from synthesis.model.dynamics.bodies import BodySpec, LinkShape, Name, PointMass, Shape
 from synthesis.model.dynamics.loads import LoadSpec
@@ -103,7 +104,7 @@ class LoadedLinkage(Statement):
     @model_validator(mode="after")
     def _validate_materials(self) -> Self:
         if self.units != "si" and any(shape.material is not None for shape in self._list_shapes()):
-            raise ValueError("materials are defined in SI units; with consistent units give densities")
+            raise ValueError(compose("model-materials-need-si"))
         return self
 
     def _list_shapes(self) -> list[Shape | LinkShape]:
@@ -175,7 +176,7 @@ class DesignDynamics(LoadedLinkage):
             self._plate = self.links.fill_sizes(width, thickness)
         except ValidationError as error:
             reason = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-            return reason if layout is not None else f"{reason}; or give a layout, whose sizes are then used"
+            return reason if layout is not None else compose("model-sizes-or-layout", reason=reason)
         return None
 
     @model_validator(mode="after")
@@ -187,7 +188,7 @@ class DesignDynamics(LoadedLinkage):
     @model_validator(mode="after")
     def _validate_drive(self) -> Self:
         if self.speed_rpm is None and self.speed is None:
-            raise ValueError("give speed_rpm, or speed for a sliding input; 0 means statics")
+            raise ValueError(compose("model-speed-missing"))
         return self
 
 

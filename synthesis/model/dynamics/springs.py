@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import FORCE, LENGTH, STIFFNESS, TORSION_STIFFNESS
 from synthesis.model.dynamics.bodies import Name, Place
 from synthesis.model.problem import Degrees, NonNegative, Number, Statement
@@ -46,10 +47,10 @@ class SpringSpec(Statement):
         linear = {"ends", "rate", "free_length", "preload", "one_sided"} & changed
         turning = {"torsion", "links", "free_angle"} & changed
         if (self.ends is None) == (self.torsion is None):
-            raise ValueError("give the ends of a linear spring, or the torsion rate and the links of a torsion spring")
+            raise ValueError(compose("model-spring-form"))
         if linear and turning:
             mixed = turning if self.torsion is None else linear
-            raise ValueError(f"{', '.join(sorted(mixed))}: only for the other type of spring")
+            raise ValueError(compose("model-spring-fields-mixed", fields=", ".join(sorted(mixed))))
         if self.torsion is not None and self.links is None:
-            raise ValueError("a torsion spring needs the two links that it connects, `links`")
+            raise ValueError(compose("model-torsion-spring-needs-links"))
         return self

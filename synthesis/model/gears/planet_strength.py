@@ -17,6 +17,7 @@ from pydantic import Field
 from kinematics.gear.arrangements import Arrangement
 from kinematics.gear.flanks import Contact
 from kinematics.gear.teeth import Gear, Mesh
+from kinematics.message import compose
 from synthesis.model.gears.strength import CarriedPower, LoadedPair, StrengthMethod, describe_strength
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Statement
@@ -59,7 +60,7 @@ class PlanetSharing(Statement):
         """Return errors of the load sharing factor for a number of planets."""
         if self.load_sharing is None or self.load_sharing <= planets:
             return []
-        return [("/load_sharing", f"with {planets} planets the factor is at most {planets}: one planet carries all")]
+        return [("/load_sharing", compose("model-load-sharing-too-large", planets=planets))]
 
 
 class PlanetStrength(PlanetSharing, StrengthMethod):

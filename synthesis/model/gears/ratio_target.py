@@ -26,6 +26,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
 
+from kinematics.message import compose
+
 MAX_TEXT_LENGTH = 120
 """Maximum number of characters of a target; longer texts are errors or attacks."""
 
@@ -168,9 +170,9 @@ def parse_target(text: float | str) -> tuple[int, RatioTarget]:
         value = parse_decimal(text)
         sign, target = (-1 if value < 0 else 1), RatioTarget(abs(value))
     if target.factor == 0:
-        raise TargetSyntaxError("a ratio must not be zero")
+        raise TargetSyntaxError(compose("model-ratio-zero"))
     if target.compare(MIN_RATIO) < 0 or target.compare(MAX_RATIO) > 0:
-        raise TargetSyntaxError("the magnitude of a ratio must be between 1e-9 and 1e9")
+        raise TargetSyntaxError(compose("model-ratio-out-of-range"))
     return sign, target
 
 
@@ -181,7 +183,7 @@ def parse_decimal(number: float) -> Fraction:
 
 def _parse(text: str) -> tuple[int, RatioTarget]:
     if len(text) > MAX_TEXT_LENGTH:
-        raise TargetSyntaxError(f"expected at most {MAX_TEXT_LENGTH} characters")
+        raise TargetSyntaxError(compose("model-ratio-text-too-long", count=MAX_TEXT_LENGTH))
     body = text.strip().lower()
     sign = -1 if body.startswith("-") else 1
     body = body[1:] if body[:1] in ("-", "+") else body
@@ -201,7 +203,7 @@ def _parse(text: str) -> tuple[int, RatioTarget]:
         if constant:
             powers[constant] += direction
         elif Fraction(number or root) == 0:
-            raise TargetSyntaxError("a ratio must not be zero" if direction > 0 else "division by zero")
+            raise TargetSyntaxError(compose("model-ratio-zero" if direction > 0 else "model-ratio-division-by-zero"))
         elif number:
             factor *= Fraction(number) ** direction
         else:
@@ -214,10 +216,10 @@ def _parse(text: str) -> tuple[int, RatioTarget]:
 
 
 def _describe_unexpected(body: str, place: int) -> TargetSyntaxError:
-    met = f"{body[place:].strip()[:12]!r}" if body[place:].strip() else "the end"
-    return TargetSyntaxError(
-        f"expected numbers, pi, e or sqrt(number) joined by * or /, such as 127/50 or pi/2; got {met}"
-    )
+    rest = body[place:].strip()
+    if not rest:
+        return TargetSyntaxError(compose("model-ratio-text-ends-early"))
+    return TargetSyntaxError(compose("model-ratio-text-unexpected", text=repr(rest[:12])))
 
 
 def _simplify_root(radicand: Fraction) -> tuple[Fraction, Fraction]:

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.gears.ratio_target import MAX_TEXT_LENGTH, parse_target
 from synthesis.model.problem import Contradiction, Count, Number, PositiveLength, Range, Statement
@@ -90,7 +91,7 @@ class ToothRange(Statement):
 def find_tooth_errors(teeth: ToothRange, tooth_sum: ToothRange) -> list[Contradiction]:
     """Return a contradiction for each pair of limits on the teeth of a gearbox whose minimum exceeds the maximum."""
     return [
-        Contradiction(f"/{name}/max", "must not be less than min")
+        Contradiction(f"/{name}/max", compose("model-max-below-min"))
         for name, limits in (("teeth", teeth), ("tooth_sum", tooth_sum))
         if limits.min > limits.max
     ]

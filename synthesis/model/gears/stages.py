@@ -11,6 +11,7 @@ from pydantic import Field
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import BevelCones
 from kinematics.gear.train import USUAL_FRICTION, USUAL_QUOTIENT, StageKind, TrainStage
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE
 from synthesis.model.gears import mesh_limits
 from synthesis.model.json_object import JsonObject
@@ -107,12 +108,12 @@ class StageType(Statement):
     def find_type_errors(self) -> list[tuple[str, str]]:
         """Return errors of fields that the type lacks or that are missing, as pairs (path in the stage, detail)."""
         faults = [
-            (f"/{name}", f"stages of type {self.type} have no such field; leave it out")
+            (f"/{name}", compose("model-stage-field-foreign", type=self.type))
             for name in FIELD_STAGE_TYPES
             if self.type not in self.list_types_with(name) and getattr(self, name) is not None
         ]
         if self.type == "helical" and not self.helix_angle:
-            faults.append(("/helix_angle", "a helical stage needs the helix angle of its driver, other than 0"))
+            faults.append(("/helix_angle", compose("model-stage-needs-helix-angle")))
         driver, driven = getattr(self, "driver", None), getattr(self, "driven", None)
         if (
             self.type == "bevel"
@@ -120,7 +121,9 @@ class StageType(Statement):
             and isinstance(driven, int)
             and not self.has_meeting_cones(driver, driven)
         ):
-            faults.append(("/shaft_angle", f"bevel gears with {driver} and {driven} teeth cannot mesh at this angle"))
+            faults.append(
+                ("/shaft_angle", compose("model-bevel-gears-cannot-mesh", driver=str(driver), driven=str(driven)))
+            )
         return faults
 
 

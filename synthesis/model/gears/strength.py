@@ -20,19 +20,14 @@ from kinematics.gear.flanks import Contact
 from kinematics.gear.strength import Factors, Load
 from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import TrainStage
+from kinematics.message import compose, join_messages
 from synthesis.model.answer import Answer, optional_field
-from synthesis.model.counting import format_count
 from synthesis.model.dimension import ROTATIONAL_SPEED, Length
 from synthesis.model.gears.answer import apply_tool_contact
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import PositiveNumber, Statement
 
 Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
-
-ESTIMATE_NOTE = (
-    "A first estimate by textbook formulas: life, temperature, lubrication, mounting and material data other than the "
-    "given allowable stresses are ignored. Size gears by the applicable standard."
-)
 
 AGMA_FACTORS = ("size", "load_distribution", "rim", "bending_geometry", "contact_geometry", "elastic")
 """Factors of the AGMA equations that Lewis's equation does not have."""
@@ -109,11 +104,11 @@ class StrengthMethod(Statement):
             return []
         faults = []
         if self.allowable_contact is not None:
-            faults.append(("/allowable_contact", "Lewis's equation has no contact stress; leave it out or use agma"))
+            faults.append(("/allowable_contact", compose("model-lewis-without-contact-stress")))
         if _is_given(self, "quality"):
-            faults.append(("/quality", "Lewis's equation has no quality number; leave it out or use agma"))
+            faults.append(("/quality", compose("model-lewis-without-quality")))
         return faults + [
-            (f"/factors/{name}", "Lewis's equation has no such factor; leave it out or use agma")
+            (f"/factors/{name}", compose("model-lewis-without-factor"))
             for name in AGMA_FACTORS
             if _is_given(self.factors, name)
         ]
@@ -123,15 +118,15 @@ class StrengthMethod(Statement):
         name = "form" if self.method == "lewis" else "bending_geometry"
         if self.allowable_bending is None or getattr(self.factors, name) is not None:
             return []
-        return [("/allowable_bending", f"the bending stress of a ring needs factors/{name}; give it")]
+        return [("/allowable_bending", compose("model-ring-bending-needs-factor", name=name))]
 
     def find_helix_errors(self) -> list[tuple[str, str]]:
         """Return errors for helical teeth, whose bending geometry factor is read from charts and must be given."""
         if self.method == "lewis":
-            return [("/method", "Lewis's equation is for spur teeth; use agma for helical ones")]
+            return [("/method", compose("model-lewis-only-spur"))]
         if self.allowable_bending is None or self.factors.bending_geometry is not None:
             return []
-        detail = "the bending stress of helical teeth needs factors/bending_geometry; give it"
+        detail = compose("model-helix-bending-needs-factor")
         return [("/allowable_bending", detail)]
 
     @property
@@ -173,7 +168,7 @@ class CarriedPower(StrengthSpec):
         """Return errors that the validation of single fields cannot find, by the path below this statement."""
         if self.required_safeties:
             return super().find_errors()
-        return [*super().find_errors(), ("/allowable_bending", "give allowable_bending or allowable_contact, in MPa")]
+        return [*super().find_errors(), ("/allowable_bending", compose("model-allowable-stress-missing"))]
 
 
 class StressedGear(Answer):
@@ -488,10 +483,9 @@ def find_common_width(judges: list[StressCalculator], names: list[str]) -> float
 
 def describe_power_rejections(failed: int) -> str:
     """Return the sentence that a design carries the power, with the number of better trains that do not."""
-    before = (
-        format_count(failed, "better train does not", "better trains do not") if failed else "all trains checked do"
-    )
-    return f"It carries the power by a first estimate; {before}."
+    if not failed:
+        return compose("model-power-carried-by-all-checked")
+    return compose("model-power-carried-after-failures", count=failed)
 
 
 def describe_too_weak(required: CarriedPower, failed: int, every: bool, strongest: float) -> str:
@@ -500,11 +494,19 @@ def describe_too_weak(required: CarriedPower, failed: int, every: bool, stronges
     ``failed`` trains were checked, which are all possible ones if ``every``. ``strongest`` is the power that the
     strongest of them carries, W; 0 if it is unknown.
     """
-    which = f"the {failed} possible trains" if every else f"the best {failed} trains"
-    sentence = f"None of {which} carries {required.power_kw:.6g} kW with a face of {required.max_face_width:g} modules."
+    sentences = [
+        compose(
+            "model-power-carried-by-no-possible" if every else "model-power-carried-by-no-best",
+            count=failed,
+            power=f"{required.power_kw:.6g}",
+            width=f"{required.max_face_width:g}",
+        )
+    ]
     if strongest:
-        sentence += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
-    return sentence if every else f"{sentence} Further trains were not checked."
+        sentences.append(compose("model-strongest-train", power=f"{strongest / 1000.0:.3g}"))
+    if not every:
+        sentences.append(compose("model-further-trains-unchecked"))
+    return join_messages(sentences)
 
 
 def build_stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:
@@ -543,7 +545,7 @@ def describe_strength(loaded: LoadedPair, method: StrengthMethod, face_width: fl
         rows = [{name: None if name in depending else value for name, value in row.items()} for row in rows]
     answer = {
         "method": method.method,
-        "estimate": ESTIMATE_NOTE,
+        "estimate": compose("model-strength-estimate"),
         "tangential_force": found.load.force,
         "pitch_line_velocity": found.load.speed,
         "dynamic": found.dynamic,

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.problem import Count, Number, Statement
 
@@ -48,7 +49,7 @@ class DriveSpeed(Statement):
     def find_errors(self) -> list[tuple[str, str]]:
         """Return errors that the validation of single fields cannot find, as pairs (JSON pointer, detail)."""
         if self.speed is not None and self.speed_rpm is not None:
-            return [("/motion/speed_rpm", "give the speed in rad/s or in revolutions per minute, not both")]
+            return [("/motion/speed_rpm", compose("model-speed-twice"))]
         return []
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
 from synthesis.model.dynamics.request import DesignDynamics, ForceQuantity
 from synthesis.model.layout import LayoutSpec
@@ -93,7 +94,7 @@ class LengthLimits(Statement):
     @model_validator(mode="after")
     def _validate_order(self) -> Self:
         if self.max is not None and self.min >= self.max:
-            raise ValueError("min must be below max")
+            raise ValueError(compose("model-min-not-below-max"))
         return self
 
 
@@ -145,7 +146,7 @@ class Constraints(Statement):
     def find_contradictions(self) -> list[Contradiction]:
         """Return constraints that exclude one another, with paths below the problem."""
         if self.full_rotation and self.grashof in ("double_rocker", "non_grashof"):
-            detail = f"the input of a {self.grashof} linkage cannot make a full turn; drop full_rotation or grashof"
+            detail = compose("model-full-rotation-excluded", grashof=self.grashof)
             return [Contradiction("/constraints/full_rotation", detail)]
         return []
 
@@ -153,7 +154,7 @@ class Constraints(Statement):
         """Return a contradiction if the required Grashof class is not among the possible ``classes``."""
         if self.grashof == "any" or self.grashof in classes:
             return []
-        return [Contradiction("/constraints/grashof", f"{reason}; drop the constraint")]
+        return [Contradiction("/constraints/grashof", compose("model-constraint-impossible", reason=reason))]
 
 
 class RequestedDriver(Protocol):
@@ -219,7 +220,7 @@ class LinkageProblem(ProblemBase):
     @property
     def manufacture_task(self) -> ManufactureTask | str:
         """Requirements at the targets of the task, for the block ``manufacture``, or a message if not supported."""
-        return f"only motion, path and function support `manufacture`, not {self.kind}; leave it out"
+        return compose("model-manufacture-unsupported", kind=self.kind)
 
     @property
     def guides_a_point(self) -> bool:
@@ -261,24 +262,24 @@ class LinkageProblem(ProblemBase):
         """Return constraints that exclude one another, or that no linkage for the task can satisfy."""
         listed = self.constraints.find_contradictions()
         if self.rank_by == "planes" and self.layout is None:
-            listed.append(Contradiction("/rank_by", "ranking by planes needs a `layout`"))
+            listed.append(Contradiction("/rank_by", compose("model-rank-by-planes-needs-layout")))
         missing = None if self.dynamics is None else self.dynamics.fill_from_layout(self.layout)
         if missing is not None:
             listed.append(Contradiction("/dynamics/links", missing))
         listed += self._find_forces_without_loads()
         if self.rank_by == "yield" and (self.manufacture is None or not self.manufacture.is_sampled):
-            detail = "ranking by yield needs `manufacture` with tolerances and a quality"
+            detail = compose("model-rank-by-yield-needs-manufacture")
             listed.append(Contradiction("/rank_by", detail))
         listed += self._find_manufacture_errors()
         # The remaining checks concern only tasks without a body.
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
-            listed.append(Contradiction("/space/body", "only tasks that carry a body through positions have a body"))
+            listed.append(Contradiction("/space/body", compose("model-space-body-without-positions")))
         moving = self.space.moving_pivots
         for side, zones in (("input", moving.input), ("output", moving.output)) if moving is not None else ():
             if any(zone.frame == "body" for zone in ([zones] if isinstance(zones, MovingZone) else zones or [])):
-                detail = "frame body needs a task that carries a body through positions; leave the frame out"
+                detail = compose("model-body-frame-without-positions")
                 listed.append(Contradiction(f"/space/moving_pivots/{side}", detail))
         return listed
 
@@ -288,14 +289,14 @@ class LinkageProblem(ProblemBase):
         if self.rank_by in FORCE_NAMES:
             demanded["/rank_by"] = self.rank_by
         if self.dynamics is None:
-            detail = "forces need `dynamics` with masses, loads and a speed"
+            detail = compose("model-forces-need-dynamics")
             return [Contradiction(path, detail) for path in demanded]
         missing: dict[str, str] = {}
         if not self.dynamics.loads:
-            missing["joint_force_index"] = "the joint force index needs at least one load in `dynamics`"
+            missing["joint_force_index"] = compose("model-joint-force-index-needs-load")
         # Tasks whose input may rotate or slide are checked per design instead.
         if self.input_slides:
-            missing["drive_torque"] = "a force drives the sliding input, no torque; limit joint_force or power instead"
+            missing["drive_torque"] = compose("model-sliding-input-without-torque")
         return [Contradiction(path, missing[name]) for path, name in demanded.items() if name in missing]
 
     def _find_manufacture_errors(self) -> list[Contradiction]:

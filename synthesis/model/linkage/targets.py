@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dimension import OUTPUT, Angle, Length, Output
 from synthesis.model.problem import Coordinate, Degrees, Number, Statement
@@ -41,9 +42,9 @@ class TargetSpec(Statement):
             return fields
         has = {name for name in ("x", "y", "angle", "output", "input_angle") if fields.get(name) is not None}
         if "output" in has and ({"x", "y", "angle"} & has or "input_angle" not in has):
-            raise ValueError("a target of the output consists of output and input_angle, without x, y and angle")
+            raise ValueError(compose("model-output-target-fields"))
         if "output" not in has and not {"x", "y"} <= has:
-            raise ValueError("give x and y of P, or output and input_angle")
+            raise ValueError(compose("model-target-incomplete"))
         return fields
 
     @property

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, TypeVar
 
+from kinematics.message import compose
 from synthesis.model.linkage.problem import Constraints, LinkageProblem
 from synthesis.model.problem import Contradiction
 
@@ -46,7 +47,7 @@ def find_sixbar_contradictions(
 
 def describe_skipped_sixbars(unsupported: Iterable[Contradiction]) -> str:
     """Describe why ``auto`` searched no sixbars: name the fields that they do not support."""
-    return f"Sixbars were not searched: they do not support {_list_fields(unsupported)}."
+    return compose("model-sixbars-skipped", fields=_list_fields(unsupported))
 
 
 def remove_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> tuple[Name, ...]:
@@ -58,14 +59,12 @@ def remove_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> 
 def describe_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> str:
     """Describe why :data:`UNCLASSED_SIXBAR` was requested but not searched; empty if it was searched."""
     fields = _list_fields(beyond) if UNCLASSED_SIXBAR in named else ""
-    return f"Stephenson II sixbars were not searched: they do not support {fields}." if fields else ""
+    return compose("model-stephenson-2-skipped", fields=fields) if fields else ""
 
 
 def refuse_class(limits: Constraints) -> list[Contradiction]:
     """Return a contradiction if a Grashof class is required of :data:`UNCLASSED_SIXBAR`."""
-    return limits.find_class_contradictions(
-        (), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
-    )
+    return limits.find_class_contradictions((), compose("model-stephenson-2-without-class"))
 
 
 def _list_fields(faults: Iterable[Contradiction]) -> str:
@@ -75,9 +74,9 @@ def _list_fields(faults: Iterable[Contradiction]) -> str:
 def find_unsupported_by_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:
     """Yield contradictions of the fields that no sixbar supports, for all kinds of problems."""
     if problem.manufacture is not None:
-        yield Contradiction("/manufacture", "sixbars do not support `manufacture`; leave it or the sixbars out")
+        yield Contradiction("/manufacture", compose("model-sixbars-without-manufacture"))
     for name in ("fixed_pivots", "moving_pivots"):
         if problem.space is not None and getattr(problem.space, name) is not None:
             kind = name.removesuffix("s")
-            detail = f"these zones are for the sides of a fourbar; for sixbars give constraints.{kind}_region instead"
+            detail = compose("model-sixbars-without-zones", name=kind)
             yield Contradiction(f"/space/{name}", detail)

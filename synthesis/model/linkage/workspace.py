@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from synthesis.model.dimension import LENGTH
 from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.zones import MovingZone, Outline, Zone
@@ -22,7 +23,7 @@ MAX_ZONES = 20
 def _list_corners(box: tuple[Point, Point]) -> tuple[Point, Point]:
     (left, low), (right, high) = box
     if left >= right or low >= high:
-        raise ValueError("give the lower left corner first, then the upper right corner")
+        raise ValueError(compose("model-box-corners-swapped"))
     return box
 
 
@@ -173,10 +174,10 @@ class Space(Statement):
                 (left, low), (right, high) = self.box
                 x, y = corners.real, corners.imag
                 if min(x.min() - left, right - x.max(), y.min() - low, high - y.max()) < width:
-                    found.append(Contradiction("/space/box", f"position {k} lies outside the box"))
+                    found.append(Contradiction("/space/box", compose("model-position-outside-box", position=str(k))))
             for n, zone in enumerate(self.obstacles):
                 if zone.compute_distance_from(corners) < self.clearance + width or zone.is_entered_by(corners):
-                    detail = f"the body in position {k} is closer to this obstacle than the clearance"
+                    detail = compose("model-body-near-obstacle", position=str(k))
                     found.append(Contradiction(f"/space/obstacles/{n}", detail))
         # Report one message for each obstacle or box: that of the first position that collides.
         return list({fault.path: fault for fault in reversed(found)}.values())[::-1]

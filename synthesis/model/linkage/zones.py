@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.model.problem import Point, PositiveLength, Statement
 from synthesis.model.triangles import triangulate_polygon
 
@@ -48,10 +49,11 @@ def _require_simple(points: list[tuple[float, float]]) -> list[tuple[float, floa
 
     extent = np.ptp(np.array(points), axis=0).max()
     if extent == 0.0 or Polygon(points).area <= FLATNESS_TOLERANCE * extent**2:
-        raise ValueError("the corners enclose no area")
+        raise ValueError(compose("model-outline-without-area"))
     if not Polygon(points).is_valid:
-        reason = is_valid_reason(Polygon(points))
-        raise ValueError(f"the outline must not intersect itself ({reason})")
+        # The reason ends with the coordinates of an intersection, such as "Self-intersection[3 2]".
+        x, y = is_valid_reason(Polygon(points)).rpartition("[")[2].rstrip("]").split()
+        raise ValueError(compose("model-outline-intersects-itself", x=x, y=y))
     return points
 
 
@@ -83,7 +85,7 @@ class Zone(Statement):
     @model_validator(mode="after")
     def _validate_shape(self) -> Self:
         if (self.polygon is None) == (self.circle is None):
-            raise ValueError("give a polygon or a circle")
+            raise ValueError(compose("model-zone-form"))
         return self
 
     @cached_property

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.problem import Contradiction, Count, Flag, NonNegative, PositiveLength, Sizable, Statement
 
@@ -127,26 +128,26 @@ class Exactness(Statement):
         listed = []
         tolerances = self.tolerances
         if tolerances is not None and not tolerances.off and tolerances.pin_clearance == 0.0:
-            listed.append(Contradiction("/tolerances", "at least one tolerance must be above 0"))
+            listed.append(Contradiction("/tolerances", compose("model-tolerances-zero")))
         judged = self.quality is not None and (not self.is_gridded or self.quality.yield_ is not None)
         if tolerances is not None and tolerances.pin_clearance > 0.0 and not tolerances.off and judged:
-            detail = "a quality needs tolerances of dimensions: give length or pivot"
+            detail = compose("model-quality-needs-dimension-tolerances")
             listed.append(Contradiction("/tolerances", detail))
         if self.input == "adjusted" and not task.free_inputs:
-            listed.append(Contradiction("/input", "the task gives the inputs at its targets; use fixed"))
+            listed.append(Contradiction("/input", compose("model-inputs-given-by-task")))
         quality = self.quality
         if quality is not None and quality.max_error is None and quality.max_angle_error is None:
-            detail = "a quality needs max_error or max_angle_error"
+            detail = compose("model-quality-empty")
             listed.append(Contradiction("/quality", detail))
         if quality is not None and quality.max_error is not None and not task.distances:
-            detail = "the task has only angles; give max_angle_error instead"
+            detail = compose("model-quality-only-angles")
             listed.append(Contradiction("/quality/max_error", detail))
         if quality is not None and quality.max_angle_error is not None and not task.angles:
-            detail = "the task has no angles; give max_error instead"
+            detail = compose("model-quality-without-angles")
             listed.append(Contradiction("/quality/max_angle_error", detail))
         if self.is_sampled and self.samples * task.targets > MAX_DRIVEN:
             most = MAX_DRIVEN // task.targets
-            detail = f"with {task.targets} targets at most {most} samples are possible"
+            detail = compose("model-too-many-samples", targets=task.targets, samples=most)
             listed.append(Contradiction("/samples", detail))
         return listed
 
@@ -182,10 +183,12 @@ class Manufacture(Exactness):
             listed.append(Contradiction("/round" if self.round is not None else "/stock", task.ungridded))
         wanted = self.required_yield
         if self.widest and (wanted is None or not self.is_sampled):
-            detail = "widest needs tolerances of dimensions and quality.yield"
+            detail = compose("model-widest-needs-yield")
             listed.append(Contradiction("/widest", detail))
         if wanted is not None and self.samples < (needed := count_required_samples(wanted)):
-            listed.append(Contradiction("/samples", f"a yield of {wanted:g} needs at least {needed} samples"))
+            listed.append(
+                Contradiction("/samples", compose("model-yield-needs-samples", share=f"{wanted:g}", samples=needed))
+            )
         return listed
 
     def _validate_blocks(self) -> list[Contradiction]:
@@ -193,10 +196,10 @@ class Manufacture(Exactness):
         if self.tolerances is not None or (self.is_gridded and self.required_yield is None):
             return []
         if self.is_gridded:
-            return [Contradiction("/tolerances", "missing: a yield needs tolerances")]
+            return [Contradiction("/tolerances", compose("model-yield-needs-tolerances"))]
         if self.quality is None:
-            return [Contradiction("", "the block is empty; give tolerances, round or stock")]
-        return [Contradiction("/tolerances", "missing: a quality needs tolerances")]
+            return [Contradiction("", compose("model-manufacture-empty"))]
+        return [Contradiction("/tolerances", compose("model-quality-needs-tolerances"))]
 
 
 def list_fixed_coordinates(

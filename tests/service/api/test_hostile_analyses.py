@@ -153,7 +153,7 @@ def test_numerical_errors_that_escape_are_refused_and_marked_as_defects() -> Non
             raise error
         assert (refused.value.status, refused.value.defect) == (422, type(error).__name__)
     with pytest.raises(Refusal) as passed, refuse_numerical_errors():
-        raise Refusal(409, "x", "X", "x")
+        raise Refusal(409, "x", "service-title-busy", "x")
     assert passed.value.defect is None
     with pytest.raises(KeyError), refuse_numerical_errors():  # what no numbers bring about stays a defect
         raise KeyError

@@ -10,8 +10,9 @@ import pytest
 from numba import njit
 
 from kinematics.kernel_marks import is_compiled
+from kinematics.message import compose
 from service.jobs.processes.stop_flag import Solving
-from service.jobs.workers.compile_watch import COMPILING_TEXT, FirstUse
+from service.jobs.workers.compile_watch import COMPILING_ID, FirstUse
 from service.kernels import KernelsState, Progress
 from service.server.precompile import list_parts
 from synthesis.registry import KINDS
@@ -48,7 +49,7 @@ def test_a_job_that_compiles_says_so_and_goes_on_with_what_it_said(heard):
         progress(0.3, "searching")
         assert njit(quick)(1.0) == 2.0
         progress(0.6, "verifying")
-    assert heard == [(0.3, "searching"), (0.3, COMPILING_TEXT), (0.3, "searching"), (0.6, "verifying")]
+    assert heard == [(0.3, "searching"), (0.3, compose(COMPILING_ID)), (0.3, "searching"), (0.6, "verifying")]
 
 
 def test_what_is_compiled_inside_a_kernel_is_said_once_and_of_no_other_thread(heard):
@@ -61,7 +62,7 @@ def test_what_is_compiled_inside_a_kernel_is_said_once_and_of_no_other_thread(he
         assert heard == []
         outer(1.0)
     njit(quick)(1.0)
-    assert heard == [COMPILING_TEXT]
+    assert heard == [compose(COMPILING_ID)]
 
 
 def test_compilation_is_not_the_solvers_time():
@@ -135,7 +136,7 @@ def test_a_first_start_takes_jobs_while_it_compiles_and_stops_in_good_order(tmp_
             return shown if shown["status"] in ("succeeded", "failed") else None
 
         assert until(ended, 300.0)["status"] == "succeeded"
-        assert COMPILING_TEXT in messages
+        assert compose(COMPILING_ID) in messages
         assert "compiling kernels in the background" in running.log_path.read_text()
         children = workers_of(running.process.pid)
         assert len(children) > 1

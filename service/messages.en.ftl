@@ -1,0 +1,201 @@
+# Titles of errors
+
+service-title-no-drawing = No drawing
+service-title-no-motion = No motion
+service-title-no-forces = No forces
+service-title-no-simulation = No simulation
+service-title-unauthorized = Unauthorized
+service-title-rate-limited = Rate limited
+service-title-foreign-host = Foreign host
+service-title-unsupported-media-type = Unsupported media type
+service-title-incomplete-body = Incomplete body
+service-title-body-too-large = Body too large
+service-title-invalid-request = Invalid request
+service-title-idempotency-key-reused = Idempotency key reused
+service-title-malformed-json = Malformed JSON
+service-title-malformed-drawing = Malformed drawing
+service-title-invalid-drawing = Invalid drawing
+service-title-store-unavailable = Store unavailable
+service-title-queue-full = Queue full
+service-title-busy = Busy
+service-title-gone = Gone
+service-title-not-found = Not found
+service-title-method-not-allowed = Method not allowed
+service-title-http-error = HTTP error
+service-title-internal-error = Internal error
+service-title-no-result = No result
+service-title-too-many-listeners = Too many listeners
+service-title-not-ready = Not ready
+service-title-part-of-batch = Part of a batch
+service-title-no-cad = No CAD
+service-title-no-parts = No parts
+service-title-worker-died = Worker died
+service-title-timeout = Timeout
+service-title-out-of-memory = Out of memory
+service-title-invalid-problem = Invalid problem
+service-title-invalid-mechanism = Invalid mechanism
+
+# Requests as a whole
+
+service-many-fields-invalid = More than { $count } fields of the request are invalid; the first { $count } are listed.
+service-fields-invalid =
+    { $count ->
+        [one] { $count } field of the request is invalid.
+       *[other] { $count } fields of the request are invalid.
+    }
+service-store-unavailable =
+    The job store does not answer. Send the request again later; with an `Idempotency-Key` this creates at most one job.
+service-queue-full = Your queue has reached its maximum number of jobs. Send the request again later.
+service-client-gone = The client has disconnected.
+service-kernels-compiling =
+    The kernels for analyses are being compiled, once after the installation. `/readyz` reports the progress.
+service-path-unknown = No such resource; check the path.
+service-request-not-served = The request cannot be served.
+service-request-failed = The request failed because of a defect of the service; its log has the details.
+service-method-not-allowed = This path does not allow { $method }; it allows { $methods }.
+service-unknown-method-not-allowed = This path does not allow this method; it allows { $methods }.
+service-key-invalid = The API key is not valid.
+service-key-missing = Send an API key: `Authorization: Bearer mechsynth_...`.
+service-rate-limit-reached = This key has reached its limit of { $requests } requests in { $seconds } seconds.
+service-host-foreign =
+    Without API keys the service accepts only requests from this machine, addressed to a local host name. `mechsynth
+    keys create NAME` makes a key.
+service-body-compressed = The body must not be compressed.
+service-body-incomplete = The connection was closed before the end of the body.
+service-body-not-json = The body must be application/json.
+service-body-too-large = The body must have at most { $count } bytes.
+service-body-malformed = The body is not valid JSON: { $reason }.
+service-key-twice = This key occurs twice; give it once.
+service-too-many-values-here = Up to here the body has more than { $count } values; the limit is { $count }.
+service-too-many-values = The body has more than { $count } values.
+service-nested-too-deeply = This is nested more than { $count } levels deep.
+service-idempotency-key-twice = Send only one `Idempotency-Key`.
+service-idempotency-key-used = A different request has used this `Idempotency-Key`. Use a new key for a new request.
+service-cursor-unknown = Expected a `next_cursor` of this service.
+service-job-unknown = No job has this id.
+service-too-many-listeners = Too many of your clients are listening; try again.
+
+# Fields of requests
+
+service-unknown-field = Unknown field; check its name.
+service-field-required = This field is required.
+service-list-expected = This must be a list.
+service-object-expected = This must be an object.
+service-string-expected = Input should be a valid string.
+service-integer-expected = Input should be a valid integer.
+service-number-expected = Input should be a valid number.
+service-input-not-finite = Input should be a finite number.
+service-boolean-expected = Input should be a valid boolean.
+service-input-greater-than = Input should be greater than { $limit }.
+service-input-greater-equal = Input should be greater than or equal to { $limit }.
+service-input-less-than = Input should be less than { $limit }.
+service-input-less-equal = Input should be less than or equal to { $limit }.
+service-kind-unknown = Kind must be given and be one of: { $names }.
+service-output-unknown = Type must be one of: { $names }.
+service-unknown-field-resembles = Unknown field; did you mean `{ $field }`?
+service-unknown-field-besides-one = Unknown field; the only field is { $field }.
+service-unknown-field-besides = Unknown field; the fields are { $fields } and { $last }.
+service-string-too-short =
+    { $count ->
+        [one] String should have at least { $count } character.
+       *[other] String should have at least { $count } characters.
+    }
+service-string-too-long =
+    { $count ->
+        [one] String should have at most { $count } character.
+       *[other] String should have at most { $count } characters.
+    }
+service-string-mismatch = String should match pattern '{ $pattern }'.
+service-discriminator-missing = The field { $field } is required.
+service-discriminator-unknown = The field { $field } must be one of: { $names }.
+service-object-too-long =
+    { $most ->
+        [one] Object should have at most { $most } member.
+       *[other] Object should have at most { $most } members.
+    }
+service-list-too-long =
+    { $most ->
+        [one] List should have at most { $most } item, not { $count }.
+       *[other] List should have at most { $most } items, not { $count }.
+    }
+service-object-too-short =
+    { $least ->
+        [one] Object should have at least { $least } member, not { $count }.
+       *[other] Object should have at least { $least } members, not { $count }.
+    }
+service-list-too-short =
+    { $least ->
+        [one] List should have at least { $least } item, not { $count }.
+       *[other] List should have at least { $least } items, not { $count }.
+    }
+service-input-is = Input should be { $name }.
+service-input-one-of = Input should be { $names } or { $last }.
+service-label-unprintable = the label must not contain NUL or lone surrogates
+
+# Analyses, drawings and files
+
+service-file-unavailable = This type of mechanism has no .{ $form } file.
+service-design-too-large-to-draw = The size of this design is beyond the range for drawings.
+service-design-too-large-to-analyse = The size of this design is beyond the range for analyses.
+service-forces-for-linkages-only = Joint forces are available for linkages only.
+service-problem-without-dynamics = The problem has no `dynamics`; post your own block.
+service-design-unknown = Design { $number } does not exist; this job has designs 0 to { $last }.
+service-job-without-designs = This job has no designs.
+service-computation-impossible = The computation failed for these numbers; check all sizes, angles and counts.
+service-simulation-unavailable = This type of mechanism has no simulations; they exist for linkages and gear trains.
+service-pmks-opens-linkages-only = PMKS+ opens linkages only.
+service-analysis-exceeds-time = The analysis exceeded its time limit of { $seconds } s; check all sizes and counts.
+service-analysis-exceeds-memory = The analysis exceeded its memory limit; check all sizes and counts.
+service-busy-with-analyses = The service is busy with other analyses. Send the request again.
+service-drawing-exceeds-time = The drawing exceeded its time limit of { $seconds } s.
+service-drawing-exceeds-memory = The drawing exceeded its memory limit.
+service-busy-with-drawings = The service is busy with other drawings. Send the request again.
+service-file-type-foreign = The body must have one of these types: { $types }.
+service-busy-with-files = The service is busy with other files. Send the request again.
+service-pixels-without-picture = Only a PNG picture has pixels; omit `pixel_size`.
+service-solids-unavailable =
+    Solids need the extra `cad`, which the service does not have; `process=laser` gives outlines without it.
+service-busy-with-parts = The service is busy with other parts. Send the request again.
+service-parts-exceed-limits = Making the parts exceeded the limit of { $seconds } seconds or the memory limit of a job.
+
+# Jobs
+
+service-filter-kind-unknown = unknown kind; the kinds are { $kinds }
+service-job-part-of-batch = The job belongs to a batch; remove /v1/batches/{ $batch }.
+service-job-ended-without-result = The job is { $status } and has no result.
+service-job-without-result-yet = The job has no result yet.
+service-store-silent = The job store does not answer.
+service-no-worker-started = No worker has finished starting yet.
+service-computation-failed = The computation failed because of a defect of the service; its log has the details.
+service-worker-died = The job was given up because its worker process died in every attempt.
+service-time-limit-exceeded = The computation was stopped at the time limit of { $seconds } s.
+service-memory-limit-exceeded = The computation exceeded the memory limit of { $size } MiB.
+service-sample-invalid = With these values the problem is invalid: { $path }: { $reason }
+service-compiling = compiling numerical code that this job is the first to need
+
+# Batches
+
+service-number-not-finite = This must be a finite number.
+service-batch-kind-varied = All problems of a batch have the same kind; `kind` cannot be varied.
+service-field-varied-twice = This field is already varied, as a whole or in part.
+service-hypercube-needs-samples = A Latin hypercube needs `samples`, the number of problems.
+service-sampling-without-samples = The values determine the number of problems of a { $sampling }; omit `samples`.
+service-sampling-without-seed = A { $sampling } has no random draws; omit `seed`.
+service-hypercube-without-count = A Latin hypercube has one value for each of its `samples`; omit `count`.
+service-count-missing = Give `count`, the number of values.
+service-zip-counts-differ = In a zip all fields need the same number of values; the first field has { $count }.
+service-batch-too-large = These values give { $count } problems; a batch can have at most { $most }.
+service-batch-values-too-long = The values of { $count } problems exceed { $size } MiB; give fewer or shorter values.
+service-metric-unknown = Unknown metric; this kind has { $metrics }.
+service-metric-twice = This metric is given twice; give it once.
+service-value-is = The value is { $value }.
+service-values-or-range = give either values, or from and to
+service-batch-progress = { $done } of { $total }
+service-batch-unknown = No batch has this id.
+service-batch-metric-unknown = Unknown metric; this batch has { $metrics }.
+service-batch-without-metrics = Unknown metric; this batch has none.
+service-metric-weighed-twice = { $metric } is named twice; minimize or maximize it once.
+service-metric-missing = Name a metric to minimize (`least`) or to maximize (`greatest`).
+service-index-expected = Expected the index of a list element, counted from 0; got { $step }.
+service-element-missing = Element { $index } does not exist; the length of the list is { $length }.
+service-place-without-members = The value before { $step } is neither an object nor a list.
