@@ -141,7 +141,7 @@ def _solve_machine(machine: Machine, now: Places, system: System, known: Real) -
     open_forces: list[Real] = []
     if machine.mechanism.redundant:
         if contacts:
-            raise TopologyError("friction is not determined with redundant constraints")
+            raise TopologyError("kinematics-friction-undetermined-if-redundant")
         open_forces = redundancy.solve_minimum_norm(system, *rows)
     elif contacts:
         stick = np.logical_or.reduce([np.broadcast_to(is_still(c, now), shape) for c in contacts])

@@ -31,10 +31,12 @@ def broadcast_shape(**shapes: Shape) -> Shape:
         raise ShapeError(**shapes) from None
 
 
-def require(name: str, expected: str, value: NDArray[np.generic], good: Mask | np.bool_) -> None:
-    """Raise an error that names the field and its first bad value, unless all values are good."""
+def require(
+    name: str, expected: str, value: NDArray[np.generic], good: Mask | np.bool_, /, **values: str | int
+) -> None:
+    """Raise :class:`DimensionError` with the first bad value, unless all are good; other arguments as for the error."""
     if not np.all(good):
-        raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item())
+        raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item(), **values)
 
 
 def build_block(rows: tuple[NDArray[Scalar], ...], designs: Shape) -> NDArray[Scalar]:
@@ -131,7 +133,7 @@ def build_sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: 
     """
     sign, theta = np.asarray(assembly), np.asarray(input_angle, np.float64)
     if not (abs(float(sign)) == 1.0 if sign.ndim == 0 else np.all(np.abs(sign) == 1)):
-        require("assembly", "+1 (open) or −1 (crossed)", sign, np.abs(sign) == 1)
+        require("assembly", "kinematics-assembly-sign", sign, np.abs(sign) == 1)
     pivots, lengths = blocks
     designs = lengths.shape[1:]
     # The common case, without the cost of broadcasting.

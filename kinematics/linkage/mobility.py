@@ -34,5 +34,5 @@ def compute_mobility(links: int, full_joints: int, half_joints: int = 0, grounde
     counts = {"links": links, "full_joints": full_joints, "half_joints": half_joints, "grounded": grounded}
     for name, count in counts.items():
         if count < 0:
-            raise DimensionError(name, "a count of at least 0", count)
+            raise DimensionError(name, "kinematics-count-at-least", count, least=0)
     return 3 * (links - grounded) - 2 * full_joints - half_joints

@@ -92,11 +92,14 @@ def build_joint_matrix(joints: Sequence[Joint]) -> Real:
     DimensionError
         For no joint, or an angle outside 0 to below π/2: a joint at a right angle cannot turn.
     """
-    require("number of joints", "at least 1", np.asarray(len(joints)), np.bool_(len(joints) >= 1))
+    require(
+        "kinematics-joint-count", "kinematics-at-least", np.asarray(len(joints)), np.bool_(len(joints) >= 1), least=1
+    )
     matrix = np.eye(2)
     for n, joint in enumerate(joints):
         angle = np.asarray(joint.angle)
-        require("angle of a joint", "from 0 to below a right angle", angle, (angle >= 0.0) & (angle < 0.5 * np.pi))
+        possible = (angle >= 0.0) & (angle < 0.5 * np.pi)
+        require("kinematics-joint-angle", "kinematics-below-right-angle", angle, possible)
         if n:
             # The driven fork is a quarter turn from the driver's; the next joint counts from its own driving fork.
             turn = joint.offset + 0.5 * math.pi
@@ -165,7 +168,7 @@ def find_shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
 def compute_joint_angle(fluctuation: float) -> float:
     """Compute the joint angle, radians, with a given fluctuation (ω_max − ω_min)/ω_mean (Rao, Solved Problem 4.10)."""
     value = np.asarray(fluctuation)
-    require("fluctuation", "positive or zero, and finite", value, np.isfinite(value) & (value >= 0.0))
+    require("fluctuation", "kinematics-zero-or-more-and-finite", value, np.isfinite(value) & (value >= 0.0))
     cosine = 0.5 * (math.hypot(fluctuation, 2.0) - fluctuation)
     return math.acos(min(cosine, 1.0))
 
@@ -179,6 +182,6 @@ def compute_max_joint_angle(least: float, greatest: float) -> float:
         Limits of output over input speed, in (0, 1] and at least 1; 0 and infinity for no limit.
     """
     low, high = np.asarray(least), np.asarray(greatest)
-    require("least ratio", "from 0 to 1", low, (low >= 0.0) & (low <= 1.0))
-    require("greatest ratio", "at least 1", high, high >= 1.0)
+    require("kinematics-least-ratio", "kinematics-from-0-to-1", low, (low >= 0.0) & (low <= 1.0))
+    require("kinematics-greatest-ratio", "kinematics-at-least", high, high >= 1.0, least=1)
     return math.acos(max(least, 1.0 / greatest))

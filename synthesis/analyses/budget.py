@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from kinematics.message import compose
+
 MAX_VALUES = 2_000_000
 """Maximum count of numbers in the lists of an answer: about forty megabytes of JSON."""
 
@@ -33,4 +35,4 @@ def require_values(path: str, positions: int, numbers: int) -> None:
     if positions * numbers > MAX_VALUES:
         # Report the limit in positions, because the request determines their number.
         most = MAX_VALUES // numbers
-        raise BudgetError(path, f"at most {most} positions, each of which has {numbers} numbers here, got {positions}")
+        raise BudgetError(path, compose("analyses-too-many-positions", most=most, numbers=numbers, positions=positions))

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.model.linkage.input_motion import FULL_TURN, MAX_POSITIONS, RAD_PER_S, DriveSpeed, Sweep
 from synthesis.model.problem import Number, Sizable, Statement
 
@@ -47,9 +48,9 @@ class TimedRun(DriveSpeed):
         faults, span = super().find_errors(), self.time
         # A run backwards has no positions, so their number is not checked.
         if span.end < span.start:
-            faults.append(("/motion/time/end", "the end must not lie before the start"))
+            faults.append(("/motion/time/end", compose("analyses-end-before-start")))
         elif (span.end - span.start) / span.step > MAX_POSITIONS - 1:
-            faults.append(("/motion/time/step", f"more than {MAX_POSITIONS} positions; take larger steps"))
+            faults.append(("/motion/time/step", compose("analyses-step-too-small", most=MAX_POSITIONS)))
         return faults
 
     def list_inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:

@@ -34,8 +34,10 @@ class RangeError(DimensionError):
     """A range of the input that is too long to sweep; ``most`` is the longest that would be accepted."""
 
     def __init__(self, length: float, most: float) -> None:
+        super().__init__("kinematics-input-range", "kinematics-at-most-long", length, most=f"{most:.4g}")
         self.most = most
-        super().__init__("range of the input", f"at most {most:.4g} long", length)
+        # Arguments with which pickle creates a copy.
+        self.args = length, most
 
 
 class _Pose(NamedTuple):
@@ -63,14 +65,14 @@ class Scene:
 
     def __init__(self, mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs) -> None:
         if mechanism.shape != ():
-            raise DimensionError("mechanism", "one design", mechanism.shape)
+            raise DimensionError("mechanism", "kinematics-single-design", mechanism.shape)
         for part in parts:
             if part.link not in mechanism.links:
-                raise DimensionError("link of a part", "a link of the mechanism", part.link)
+                raise DimensionError("kinematics-part-link", "kinematics-link-of-mechanism", part.link)
             if not len(part.points) or not np.isfinite(part.points).all():
-                raise DimensionError("points of a part", "one or more, finite", part.points)
+                raise DimensionError("kinematics-part-points", "kinematics-finite-points", part.points)
             if not 0.0 <= part.radius < np.inf:
-                raise DimensionError("radius of a part", "zero or more", part.radius)
+                raise DimensionError("kinematics-part-radius", "kinematics-zero-or-more", part.radius)
         self._mechanism = mechanism
         self._program, frame = build_program(mechanism), compute_unit_frame(mechanism)
         self.size, self._origin = float(frame.size), complex(frame.origin)
@@ -108,7 +110,7 @@ class Scene:
             For a range that would need more than :data:`MAX_CELLS` parts for all pairs together.
         """
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
-            raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
+            raise DimensionError("kinematics-input-range", "kinematics-ordered-ends", (low, high))
         most = 2.0 * INITIAL_HALF_WIDTH * self.unit * (MAX_CELLS // max(len(self.pairs), 1))
         if high - low > most:
             raise RangeError(high - low, most)

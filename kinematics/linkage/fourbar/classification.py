@@ -62,8 +62,8 @@ def grashof_excess(lengths: ArrayLike) -> Real:
     """
     lengths = np.asarray(lengths, np.float64)
     if lengths.shape[-1:] != (4,):
-        raise DimensionError("lengths", "four on the last axis", list(lengths.shape))
-    require("lengths", "positive and finite", lengths, np.isfinite(lengths) & (lengths > 0.0))
+        raise DimensionError("lengths", "kinematics-four-on-last-axis", list(lengths.shape))
+    require("lengths", "kinematics-positive-and-finite", lengths, np.isfinite(lengths) & (lengths > 0.0))
     s, p, q, longest = np.moveaxis(np.sort(lengths, axis=-1), -1, 0)
     # Differences first: the sums of nearly equal lengths would cancel.
     return np.asarray((longest - q) - (p - s))
@@ -102,9 +102,7 @@ def barker_class(linkage: Fourbar) -> BarkerClass:
     """
     number = int(barker_type(linkage))
     if number == 0:
-        raise DimensionError(
-            "lengths", "such that the longest is at most the sum of the others", _list_lengths(linkage)
-        )
+        raise DimensionError("lengths", "kinematics-longest-within-sum", _list_lengths(linkage))
     return BARKER[number - 1]
 
 

@@ -123,13 +123,13 @@ class Fourbar(DesignBatch):
         """Raise the error that names the first unsound field."""
         for name in ("input", "coupler", "output"):
             length = getattr(self, name)
-            require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+            require(name, "kinematics-positive-and-finite", length, np.isfinite(length) & (length > 0.0))
         for name in ("input_pivot", "output_pivot", "coupler_point"):
-            require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
+            require(name, "kinematics-finite", getattr(self, name), np.isfinite(getattr(self, name)))
         # Pivots near the largest double overflow here and are reported below.
         with np.errstate(over="ignore"):
             ground = self.ground
-        require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
+        require("ground", "kinematics-positive-and-finite", ground, np.isfinite(ground) & (ground > 0.0))
 
     @classmethod
     def from_lengths(
@@ -142,7 +142,7 @@ class Fourbar(DesignBatch):
     ) -> Fourbar:
         """Build a fourbar from Norton's a, b, c, d, with O2 at the origin and the ground link along +x."""
         length = np.asarray(ground, np.float64)
-        require("ground", "positive and finite", length, np.isfinite(length) & (length > 0.0))
+        require("ground", "kinematics-positive-and-finite", length, np.isfinite(length) & (length > 0.0))
         return cls(np.zeros_like(length), length, input, coupler, output, coupler_point)
 
     @cached_property

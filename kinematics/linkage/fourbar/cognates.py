@@ -238,7 +238,7 @@ def _compute_ratios(linkage: Fourbar) -> tuple[Complex, Complex]:
     # Not 1 − ζ, which would cancel for P near B.
     rest = (linkage.coupler - linkage.coupler_point) / linkage.coupler
     apart = np.minimum(np.abs(zeta), np.abs(rest)) > PIVOT_TOLERANCE
-    require("coupler_point", "away from the moving pivots A and B", linkage.coupler_point, apart)
+    require("coupler_point", "kinematics-away-from-moving-pivots", linkage.coupler_point, apart)
     return zeta, rest
 
 

@@ -84,7 +84,7 @@ def coupler_curve_degree(links: int) -> int:
     6
     """
     if links < 4 or links % 2:
-        raise DimensionError("links", "even and at least 4", links)
+        raise DimensionError("links", "kinematics-even-and-at-least", links, least=4)
     return int(2 * 3 ** (links // 2 - 1))
 
 
@@ -193,7 +193,7 @@ def _scale_dimensions(linkage: Fourbar) -> _Scaled:
 def _require_sextic(linkage: Fourbar) -> None:
     z, b = linkage.coupler_point, linkage.coupler
     apart = np.minimum(np.abs(z), np.abs(z - b)) > PIVOT_TOLERANCE * b
-    require("coupler_point", "away from the moving pivots A and B", z, apart)
+    require("coupler_point", "kinematics-away-from-moving-pivots", z, apart)
 
 
 def _find_form_roots(form: Real) -> tuple[Real, Real, Mask]:

@@ -268,11 +268,11 @@ def list_gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
     for link in (first, second):
         shared = [joint for joint in mechanism.links[link] if joint in mechanism.links[GROUND]]
         if not shared:
-            raise TopologyError(f"the gear of {link!r} has no shaft: that link is not pinned to the ground")
+            raise TopologyError("kinematics-gear-without-shaft", link=repr(link))
         pivots.append(shared[0])
     o, q = (complex(mechanism.joints[joint]) for joint in pivots)
     if ratio == 0.0 or o == q:
-        raise TopologyError(f"gears of {first!r} and {second!r} need a ratio other than 0 and two distinct shafts")
+        raise TopologyError("kinematics-gears-need-ratio-and-shafts", first=repr(first), second=repr(second))
     # Equal sense of rotation requires an idler.
     idled = 2.0 * min(1.0, abs(ratio)) if ratio > 0.0 else 0.0
     unit = abs(q - o) / (1.0 + abs(ratio) + idled)

@@ -202,7 +202,9 @@ class _Builder:
         steps = 3 ** len(parts.plates) << len(stubs)
         # Every choice of sides doubles the effort.
         if len(stubs) > 1 and steps > MAX_STEPS:
-            raise DimensionError("stub shafts", f"fewer among {len(parts.plates)} plates", len(stubs))
+            raise DimensionError(
+                "kinematics-stub-shafts", "kinematics-fewer-among-plates", len(stubs), count=len(parts.plates)
+            )
 
     def find_best(self, pairs: Sequence[_Pair]) -> _Arrangement:
         """Find the planes with the fewest collisions among these pairs, then the fewest planes."""

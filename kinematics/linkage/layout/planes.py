@@ -94,7 +94,7 @@ def stack_plates(
     kept = sorted(set(own))
     place = [kept.index(plate) for plate in own]
     if len(kept) > MAX_PLATES:
-        raise DimensionError("plates", f"at most {MAX_PLATES}", len(kept))
+        raise DimensionError("kinematics-plates", "kinematics-at-most", len(kept), most=MAX_PLATES)
     parted = np.zeros(len(kept), np.int64)
     for one, other in apart:
         if place[one] != place[other]:

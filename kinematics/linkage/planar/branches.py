@@ -103,18 +103,15 @@ def find_dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     """
     decomposition = decompose(mechanism)
     if decomposition.left or mechanism.has_slide_input:
-        raise TopologyError("expected a mechanism that closes by dyads and is driven by a link")
+        raise TopologyError("kinematics-needs-dyads-and-input-link")
     period = compute_cycle(mechanism)
     for gear in mechanism.gears:
         turned = gear.ratio * period
         # An irrational ratio never repeats; its best fraction may miss the start.
         if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEAT_TOLERANCE:
-            raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {MAX_TURNS} turns")
+            raise TopologyError("kinematics-gear-ratio-without-period", ratio=repr(gear.ratio), turns=MAX_TURNS)
     if count_fastest_turns(mechanism) > MAX_FASTEST_TURNS:
-        raise TopologyError(
-            f"gears turn a link more than {MAX_FASTEST_TURNS:g} times before the mechanism repeats; circuits are not "
-            "known"
-        )
+        raise TopologyError("kinematics-gears-turn-link-too-often", turns=f"{MAX_FASTEST_TURNS:g}")
     closures = Closures(mechanism, decomposition)
     curves = find_configuration_curves(mechanism, closures, period)
     pieces = [
@@ -147,7 +144,7 @@ def _cut_branches(curve: Curve, circuit: int, links: list[str], period: float) -
     rising = [end_cut[1] > start_cut[1] for start_cut, end_cut in pairwise(cuts)]
     # Between turns the input must alternate between rising and falling; otherwise a turn was missed.
     if any(before == after for before, after in pairwise(rising)) or (curve.closed and len(rising) % 2):
-        raise TopologyError("two limits are too close to be separated; circuits are not known")
+        raise TopologyError("kinematics-limits-too-close")
     for n, (start_cut, end_cut) in enumerate(pairwise(cuts)):
         (_, low_at, low_link), (_, high_at, high_link) = (start_cut, end_cut) if rising[n] else (end_cut, start_cut)
         start = float(np.mod(low_at, period))

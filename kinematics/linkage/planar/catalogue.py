@@ -22,7 +22,7 @@ rounding."""
 
 
 def _require_sign(name: str, sign: int) -> None:
-    require(name, "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
+    require(name, "kinematics-sign", np.asarray(sign), np.abs(sign) == 1)
 
 
 def make_fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN_ASSEMBLY) -> Mechanism:
@@ -36,7 +36,7 @@ def make_fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike =
     angle = np.asarray(input_angle, np.float64)
     at = positions(linkage, angle[..., None], assembly)
     if not at.valid.all():
-        raise DimensionError("input_angle", "one at which the fourbar can be assembled", float(angle.flat[0]))
+        raise DimensionError("input_angle", "kinematics-fourbar-closes", float(angle.flat[0]))
     return Mechanism(
         {
             "O2": linkage.input_pivot,
@@ -72,7 +72,7 @@ def make_slider_crank(
     local = (pin_a - slide_point) * np.conj(direction)
     under = coupler**2 - local.imag**2
     if under < 0.0:
-        raise DimensionError("crank_angle", "one at which the slider-crank can be assembled", crank_angle)
+        raise DimensionError("crank_angle", "kinematics-slider-crank-closes", crank_angle)
     pin_b = slide_point + direction * (local.real + assembly * np.sqrt(under))
     return Mechanism(
         {"O2": pivot, "A": pin_a, "B": pin_b, "P": pin_a + coupler_point * (pin_b - pin_a) / coupler},
@@ -107,10 +107,10 @@ def make_inverted_slider_crank(
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
     if abs(reach) <= PIVOT_TOLERANCE * abs(o4 - o2):
-        raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
+        raise DimensionError("crank_angle", "kinematics-crank-pin-not-on-pivot", crank_angle)
     # The line's distance from O4 is c sin γ: a line at that distance has to pass through A.
     if abs(output * np.sin(line_angle)) > abs(reach):
-        raise DimensionError("crank_angle", "one at which the inverted slider-crank can be assembled", crank_angle)
+        raise DimensionError("crank_angle", "kinematics-inverted-slider-crank-closes", crank_angle)
     # In the output's frame A lies on the line at t along it from B: |c + t e^{iγ}| = |reach|.
     along = -output * np.cos(line_angle) + assembly * np.sqrt(abs(reach) ** 2 - (output * np.sin(line_angle)) ** 2)
     local = output + along * np.exp(1j * line_angle)
@@ -146,13 +146,13 @@ def make_quick_return(
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
     if abs(reach) <= PIVOT_TOLERANCE * abs(o4 - o2):
-        raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
+        raise DimensionError("crank_angle", "kinematics-crank-pin-not-on-pivot", crank_angle)
     pin_c = o4 + rocker_side * rocker * reach / abs(reach)
     direction = np.exp(1j * slide_angle)
     local = (pin_c - slide_point) * np.conj(direction)
     under = coupler**2 - local.imag**2
     if under < 0.0:
-        raise DimensionError("coupler", "long enough to reach the ram's slide", coupler)
+        raise DimensionError("coupler", "kinematics-reaches-ram-slide", coupler)
     pin_d = slide_point + direction * (local.real + ram * np.sqrt(under))
     return Mechanism(
         {"O2": o2, "O4": o4, "A": pin_a, "C": pin_c, "D": pin_d},
@@ -184,7 +184,7 @@ def make_geared_fivebar(
     coupler 1 in its frame, origin at A, real axis towards C. ``input_angle`` is not reduced by full turns.
     """
     _require_sign("assembly", assembly)
-    require("gear_ratio", "finite", np.asarray(gear_ratio), np.isfinite(gear_ratio))
+    require("gear_ratio", "kinematics-finite", np.asarray(gear_ratio), np.isfinite(gear_ratio))
     ground = float(np.angle(o5 - o2))
     pin_a = o2 + input * np.exp(1j * input_angle)
     pin_b = o5 + output * np.exp(1j * (ground + gear_ratio * (input_angle - ground) + phase))
@@ -194,7 +194,7 @@ def make_geared_fivebar(
     # Heron's product in factored form, accurate near a toggle.
     product *= (f + (coupler_1 - coupler_2)) * (f - (coupler_1 - coupler_2))
     if product < 0.0 or f == 0.0:
-        raise DimensionError("input_angle", "one at which the geared fivebar can be assembled", input_angle)
+        raise DimensionError("input_angle", "kinematics-geared-fivebar-closes", input_angle)
     along = (f * f + (coupler_1 - coupler_2) * (coupler_1 + coupler_2)) / (2.0 * f)
     pin_c = pin_a + base / f * (along + 1j * assembly * np.sqrt(product) / (2.0 * f))
     return Mechanism(
@@ -229,7 +229,7 @@ def make_peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: f
     f = abs(reach)
     half = (f * f + (arm - side) * (arm + side)) / (2.0 * f) if f > 0.0 else np.inf
     if not abs(half) < arm:
-        raise DimensionError("input_angle", "one at which the arms reach the rhombus", input_angle)
+        raise DimensionError("input_angle", "kinematics-arms-reach-rhombus", input_angle)
     # B and C are symmetric about the line from O4 to A.
     unit, height = reach / f, np.sqrt((arm - half) * (arm + half))
     pin_b, pin_c = o4 + unit * (half + 1j * height), o4 + unit * (half - 1j * height)
@@ -277,14 +277,14 @@ def make_hart(
         that is not the shorter one, or a side other than +1 and −1.
     """
     _require_sign("side", side)
-    require("share", "between 0 and 1", np.asarray(share), np.bool_(0.0 < share < 1.0))
-    require("short", "shorter than the long link", np.asarray(short), np.bool_(short < long))
+    require("share", "kinematics-between-0-and-1", np.asarray(share), np.bool_(0.0 < share < 1.0))
+    require("short", "kinematics-shorter-than-long-link", np.asarray(short), np.bool_(short < long))
     pin_a = o2 + crank * np.exp(1j * input_angle)
     reach = pin_a - o4
     # The distance D C follows from O4 A = share · D C.
     base = abs(reach) / share
     if not long - short < base < long + short:
-        raise DimensionError("input_angle", "one at which the links reach each other", input_angle)
+        raise DimensionError("input_angle", "kinematics-links-reach-each-other", input_angle)
     # A trapezoid with the parallel sides B E and D C; x from A to O4, B and E on the side of positive y.
     top = (long - short) * (long + short) / base
     height = side * np.sqrt((short - 0.5 * (base - top)) * (short + 0.5 * (base - top)))
@@ -332,12 +332,12 @@ def make_pantograph(
         +1 and −1.
     """
     _require_sign("side", side)
-    require("far", "longer than near", np.asarray(far), np.bool_(far > near))
+    require("far", "kinematics-longer-than-near", np.asarray(far), np.bool_(far > near))
     pin_p = o2 + crank * np.exp(1j * input_angle)
     reach = o4 - pin_p
     f = abs(reach)
     if not abs(near - arm) < f < near + arm:
-        raise DimensionError("input_angle", "one at which the bar and the arm reach the crank pin", input_angle)
+        raise DimensionError("input_angle", "kinematics-bar-and-arm-reach-crank-pin", input_angle)
     along = (f * f + (arm - near) * (arm + near)) / (2.0 * f)
     pin_a = pin_p + reach / f * (along + 1j * side * np.sqrt((arm - along) * (arm + along)))
     ratio = far / near

@@ -254,7 +254,7 @@ def _measure_input_travel(curve: Curve, period: float) -> float:
 def _build_next_curves(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
     """Build the curves of the next closure over a curve's arcs."""
     if not arcs and closures.is_always_folded(level, curve):
-        raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; circuits are not known")
+        raise TopologyError("kinematics-link-always-folded", link=repr(closures.links[level]))
     curves: list[Curve] = []
     points: dict[float, ChangePoint] = {}
     length = curve.high - curve.low
@@ -269,10 +269,7 @@ def _build_next_curves(closures: Closures, level: int, curve: Curve, arcs: list[
         if around not in points:
             points[around] = ChangePoint(level, closures.swings(level, curve, at))
             if points[around].swings and level + 1 < len(closures.links):
-                raise TopologyError(
-                    f"{closures.links[level]!r} swings freely at a change point, where its pins coincide, and other "
-                    "links depend on it; circuits are not known"
-                )
+                raise TopologyError("kinematics-link-swings-freely", link=repr(closures.links[level]))
         return End(curve.evaluate_input(at), points[around], frozenset({level}))
 
     for arc in arcs:

@@ -119,16 +119,18 @@ def drive(
     >>> float(np.degrees(drive(fourbar, np.radians([30.0])).angles["output"][0, 0]).round(1))
     117.3
     """
-    require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
+    require("order", "kinematics-derivative-order", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
     program = build_program(mechanism)
     chosen = program.signs
     if signs is not None:
         chosen, count = signs, len(program.steps)
-        require("signs", f"{count} arrays", np.asarray(len(signs)), np.bool_(len(signs) == count))
+        require(
+            "signs", "kinematics-count-of-arrays", np.asarray(len(signs)), np.bool_(len(signs) == count), count=count
+        )
         for sign in signs:
-            require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
+            require("signs", "kinematics-sign", np.asarray(sign), np.abs(sign) == 1)
     q = np.asarray(input, np.float64)
-    require("input", "finite", q, ~np.isinf(q))
+    require("input", "kinematics-finite", q, ~np.isinf(q))
     given = (q, *(np.asarray(rate, np.float64) for rate in (speed, acceleration, jerk)[:order]))
     shape = broadcast_shape(
         designs=(*mechanism.shape, 1),
@@ -210,7 +212,7 @@ def _drive_redundant(
 ) -> MechanismMotion:
     """Drive a mechanism with redundant constraints: dyads give approximate positions, all constraints exact ones."""
     if program.class_iii:
-        raise TopologyError("a mechanism with redundant constraints must close by dyads; this one does not")
+        raise TopologyError("kinematics-redundant-needs-dyads")
 
     def drive_assembly(chosen: Integers) -> tuple[dict[str, Complex], dict[str, Real]]:
         motion = _run_sweep(mechanism, program, inputs[:1], own, chosen)
@@ -274,9 +276,10 @@ def _build_track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
         constraints = mechanism.constraints(np.array([design]))
         free = int(constraints.mobility(constraints.reference)[0])
         if free != 1:
-            raise TopologyError(f"expected a mobility of 1, got {free} by the rank of the constraints")
+            raise TopologyError("kinematics-mobility-by-rank", mobility=free)
     at = build_program(mechanism).reference_input[design : design + 1]
-    require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= MIN_CERTIFIED_STEP))
+    certified = np.bool_(track.first_step >= MIN_CERTIFIED_STEP)
+    require("kinematics-reference-input", "kinematics-away-from-toggle", at, certified)
     return loops, track
 
 

@@ -35,7 +35,7 @@ def find_branches(mechanism: Mechanism) -> list[Branch]:
         If neither the input nor another pair of links closes the mechanism by dyads, or if constraints are redundant.
     """
     if mechanism.redundant:
-        raise TopologyError("the constraints are redundant; circuits are known only without redundant constraints")
+        raise TopologyError("kinematics-circuits-unknown-if-redundant")
     if decompose(mechanism).left or mechanism.has_slide_input:
         return find_branches_by_other_driver(mechanism)
     return find_dyadic_branches(mechanism)

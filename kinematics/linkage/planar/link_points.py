@@ -43,7 +43,7 @@ def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: 
         For an unknown link, or the ground.
     """
     if link == GROUND or link not in mechanism.links:
-        raise DimensionError("link", "one that moves", link)
+        raise DimensionError("link", "kinematics-moving-link", link)
     theta = motion.angles[link]
     unit = place * np.exp(1j * theta[0])
     turned = [unit]

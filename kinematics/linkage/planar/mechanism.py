@@ -113,12 +113,14 @@ class Mechanism:
             s._replace(point=np.asarray(s.point, np.complex128), angle=np.asarray(s.angle, np.float64)) for s in slides
         )
         for name, point in points.items():
-            require(name, "finite", point, np.isfinite(point))
+            require("kinematics-joint-position", "kinematics-finite", point, np.isfinite(point), joint=name)
         for line in lines:
-            require(f"slide of {line.joint}", "finite", line.point, np.isfinite(line.point))
-            require(f"slide angle of {line.joint}", "finite", line.angle, np.isfinite(line.angle))
+            require("kinematics-slide", "kinematics-finite", line.point, np.isfinite(line.point), joint=line.joint)
+            require(
+                "kinematics-slide-angle", "kinematics-finite", line.angle, np.isfinite(line.angle), joint=line.joint
+            )
         for gear in gears:
-            require("gear ratio", "finite", np.asarray(gear.ratio), np.isfinite(gear.ratio))
+            require("kinematics-gear-ratio", "kinematics-finite", np.asarray(gear.ratio), np.isfinite(gear.ratio))
         shapes = {name: point.shape for name, point in points.items()}
         for n, line in enumerate(lines):
             shapes |= {f"slide {n}": line.point.shape, f"slide angle {n}": line.angle.shape}
@@ -187,26 +189,17 @@ class Mechanism:
         counted = self.gruebler_mobility
         object.__setattr__(self, "redundant", 1 - counted)
         if counted > 1:
-            raise TopologyError(f"expected a mobility of 1, got {counted}; look for a link or joint too many")
+            raise TopologyError("kinematics-mobility-above-one", mobility=counted)
         if counted == 1:
             return
         constraints = self.constraints()
         found = constraints.mobility(constraints.reference)
         if found.size and int(found.min()) < 1:
-            raise TopologyError(
-                f"expected a mobility of 1, got {counted}; look for a link or joint too many or, if constraints "
-                "are meant to be redundant, for dimensions that do not agree"
-            )
+            raise TopologyError("kinematics-mobility-below-one", mobility=str(counted))
         if found.size and int(found.max()) > 1:
-            raise TopologyError(
-                f"expected a mobility of 1, got {int(found.max())} by the rank of the constraints; where the links "
-                "are at a dead centre, give another position"
-            )
+            raise TopologyError("kinematics-mobility-at-dead-centre", mobility=int(found.max()))
         if not constraints.moves():
-            raise TopologyError(
-                "expected a mobility of 1, got 0: the constraints agree in this position, but in no nearby position "
-                "that the input could reach"
-            )
+            raise TopologyError("kinematics-mobility-in-one-position")
 
     def _list_links_at(self, joint: str) -> int:
         return sum(joint in listed for listed in self.links.values())
@@ -214,32 +207,32 @@ class Mechanism:
     def _check_names(self) -> None:
         """Check that links, slides, gears and the input refer to existing joints and links."""
         if GROUND not in self.links:
-            raise TopologyError(f"expected a link named {GROUND!r}")
+            raise TopologyError("kinematics-ground-missing", link=repr(GROUND))
         for name, listed in self.links.items():
             unknown = [joint for joint in listed if joint not in self.joints]
             if unknown:
-                raise TopologyError(f"link {name!r} lists the joint {unknown[0]!r}, which has no position")
+                raise TopologyError("kinematics-joint-without-position", link=repr(name), joint=repr(unknown[0]))
             if len(set(listed)) != len(listed):
-                raise TopologyError(f"link {name!r} lists a joint twice")
+                raise TopologyError("kinematics-joint-listed-twice", link=repr(name))
             if name != GROUND and len(listed) < 2:
-                raise TopologyError(f"link {name!r} needs at least two joints")
+                raise TopologyError("kinematics-link-needs-two-joints", link=repr(name))
         loose = [joint for joint in self.joints if not self._list_links_at(joint)]
         if loose:
-            raise TopologyError(f"the joint {loose[0]!r} is on no link")
+            raise TopologyError("kinematics-joint-on-no-link", joint=repr(loose[0]))
         for slide in self.slides:
             if slide.joint not in self.joints or slide.link not in self.links:
-                raise TopologyError(f"a slide joins {slide.joint!r} and {slide.link!r}, one of which does not exist")
+                raise TopologyError("kinematics-slide-with-unknown-end", joint=repr(slide.joint), link=repr(slide.link))
         for gear in self.gears:
             if gear.first not in self.links or gear.second not in self.links:
                 raise TopologyError(
-                    f"a gear pair joins {gear.first!r} and {gear.second!r}, one of which does not exist"
+                    "kinematics-gear-pair-with-unknown-link", first=repr(gear.first), second=repr(gear.second)
                 )
         drives = [slide.joint for slide in self.slides if slide.link == GROUND]
         pinned = [
             name for name, listed in self.links.items() if set(listed) & set(self.links[GROUND]) and name != GROUND
         ]
         if self.input not in (*drives, *pinned):
-            raise TopologyError(f"the input {self.input!r} is neither a link pinned to the ground nor a slide on it")
+            raise TopologyError("kinematics-input-cannot-drive", input=repr(self.input))
 
     def _check_slides(self) -> None:
         """Check that each joint lies on its slide."""
@@ -248,7 +241,8 @@ class Mechanism:
             across = np.abs((offset * np.exp(-1j * slide.angle)).imag)
             spread = np.max([np.abs(z - self.joints[slide.joint]) for z in self.joints.values()], axis=0)
             reach = np.maximum(spread, np.abs(offset))
-            require(f"distance of {slide.joint} from its slide", "zero", across, across <= SLIDE_TOLERANCE * reach)
+            near = across <= SLIDE_TOLERANCE * reach
+            require("kinematics-distance-from-slide", "kinematics-zero", across, near, joint=slide.joint)
 
     def _check_lengths(self) -> None:
         """Check that the first two joints of each moving link are distinct."""
@@ -258,8 +252,10 @@ class Mechanism:
             if link != GROUND:
                 first, second = listed[:2]
                 length = np.abs(self.joints[second] - self.joints[first])
-                name = f"length of {link} from {first} to {second}"
-                require(name, "positive", length, length > MIN_LENGTH * size)
+                require(
+                    "kinematics-link-length", "kinematics-positive", length, length > MIN_LENGTH * size,
+                    link=link, first=first, second=second,
+                )  # fmt: skip
 
     @property
     def slide_names(self) -> tuple[str, ...]:

@@ -49,7 +49,7 @@ def find_other_driver(mechanism: Mechanism) -> Mechanism:
         If no pair of pinned links closes it by dyads, or gears couple it to its ground.
     """
     if mechanism.gears:
-        raise TopologyError("a geared mechanism must close by dyads from its input; this one does not")
+        raise TopologyError("kinematics-geared-needs-dyads")
     for base in (GROUND, *(link for link in mechanism.links if link != GROUND)):
         swapped = {GROUND: base, base: GROUND}
         links = {swapped.get(name, name): listed for name, listed in mechanism.links.items()}
@@ -66,7 +66,7 @@ def find_other_driver(mechanism: Mechanism) -> Mechanism:
                 return redriven
             except DimensionError:  # a link with coincident pivots cannot drive or be driven
                 continue
-    raise TopologyError("no pair of links closes this mechanism by dyads")
+    raise TopologyError("kinematics-no-pair-closes-by-dyads")
 
 
 def find_branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
@@ -83,7 +83,7 @@ def find_branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
     closures = Closures(other, decomposition)
     curves = find_configuration_curves(other, closures, FULL_TURN)
     if any(end.point.swings for curve in curves for end in curve.ends):
-        raise TopologyError("a link swings freely while the substitute input link stands still")
+        raise TopologyError("kinematics-link-swings-at-standstill")
     true_input = _TrueInput(mechanism, other, closures, curves)
     numbers = number_circuits(curves)
     signs = find_assembly_signs(other, decomposition.steps)
@@ -153,7 +153,7 @@ class _TrueInput:
             start = turns[0] if turns else curve.low + 0.1 * length
             cuts = [t for t in turns if t - start < length * (1.0 - 1e-12)] if turns else [start]
             if turns and len(cuts) % 2:
-                raise TopologyError("two limits are too close to be separated; circuits are not known")
+                raise TopologyError("kinematics-limits-too-close")
             cuts.append(cuts[0] + length)
         else:
             cuts = [curve.low, *turns, curve.high]

@@ -198,7 +198,7 @@ class _Numbers:
         while waiting:
             link = next((w for w in waiting if self.known & set(self.mechanism.links[w])), None)
             if link is None:
-                raise TopologyError(f"no pins lead from the input to {', '.join(waiting)}; slides alone hold it")
+                raise TopologyError("kinematics-links-held-by-slides", links=", ".join(waiting))
             pin = next(joint for joint in self.mechanism.links[link] if joint in self.known)
             rows.append((kernels.GIVEN_ROTATION, self.link[link], self.joint[pin], -1, -1, -1, -1, -1))
             self._mark_known(link)
@@ -212,4 +212,7 @@ def _check_arms(frame: Frame, step: Step) -> None:
     arms["carried"] = arms["RRP"]
     for link, pin in arms.get(step.kind, []):
         length = np.abs(frame.joints[step.joint] - frame.joints[pin])
-        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > MIN_LENGTH)
+        require(
+            "kinematics-link-length", "kinematics-positive", length, length > MIN_LENGTH,
+            link=link, first=pin, second=step.joint,
+        )  # fmt: skip

@@ -86,7 +86,7 @@ def find_reversals(mechanism: Mechanism, output: str) -> Reversals:
         For a mechanism driven by a slide.
     """
     if mechanism.has_slide_input:
-        raise DimensionError("input", "a link that turns", mechanism.input)
+        raise DimensionError("input", "kinematics-turning-link", mechanism.input)
     program = build_program(mechanism)
     own = program.signs or [1] * len(program.code.rows)
     signs = np.array(own, np.int64).reshape(-1, 1)

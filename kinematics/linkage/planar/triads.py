@@ -85,7 +85,7 @@ def build_loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Lo
         For a mechanism with slides or gears, or driven by a slide.
     """
     if mechanism.slides or mechanism.gears:
-        raise TopologyError("a mechanism with slides or gears must close by dyads; this one does not")
+        raise TopologyError("kinematics-slides-and-gears-need-dyads")
     unknown = tuple(link for link in mechanism.links if link not in (GROUND, mechanism.input))
     column = {link: n for n, link in enumerate(unknown)}
     width = len(unknown) + 2  # unknown links, input, ground
@@ -107,7 +107,7 @@ def build_loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Lo
     while waiting:
         link = next((w for w in waiting if any(j in place for j in mechanism.links[w])), None)
         if link is None:
-            raise TopologyError(f"the link {waiting[0]!r} is not joined to the rest")
+            raise TopologyError("kinematics-link-apart", link=repr(waiting[0]))
         waiting.remove(link)
         reached.append(link)
         pin = next(j for j in mechanism.links[link] if j in place)

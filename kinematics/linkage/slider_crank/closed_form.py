@@ -84,9 +84,9 @@ class SliderCrank(DesignBatch):
         blocks = self._store_fields(pivot, slide_point, coupler_point, crank, coupler, slide_angle)
         if not kernels.has_sound_dimensions(*blocks):
             for name, length in (("crank", self.crank), ("coupler", self.coupler)):
-                require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+                require(name, "kinematics-positive-and-finite", length, np.isfinite(length) & (length > 0.0))
             for name in ("pivot", "slide_point", "coupler_point", "slide_angle"):
-                require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
+                require(name, "kinematics-finite", getattr(self, name), np.isfinite(getattr(self, name)))
 
     @classmethod
     def from_lengths(

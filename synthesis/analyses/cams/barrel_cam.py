@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.cam.finished.barrel_contact import UnrolledWall
 from kinematics.errors import DimensionError
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.cams.cam import MAX_EFFORT, FollowerSeries, ForceSeries, Load, compute_force_series
 from synthesis.mechanisms.base import MechanismError
@@ -66,7 +67,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
         given = self.mechanism
         radius, roller = given.cylinder_radius, given.follower.roller_radius
         if len(at) * len(given.lower_wall.x) > MAX_EFFORT:
-            raise MechanismError("/lower_wall", "too many points and positions; reduce one of them")
+            raise MechanismError("/lower_wall", compose("analyses-too-many-points-and-positions"))
         x = radius * np.radians(at)
         walls = self._build_wall("lower_wall", given.lower_wall), self._build_wall("upper_wall", given.upper_wall)
         try:
@@ -100,7 +101,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
         try:
             return UnrolledWall(curve.convert_points(f"/{name}"), math.tau * self.mechanism.cylinder_radius)
         except DimensionError:
-            raise MechanismError(f"/{name}", "neighbouring points must be different") from None
+            raise MechanismError(f"/{name}", compose("analyses-neighbouring-points-coincide")) from None
 
 
 class BarrelCamAnalysis(DrivenAnalysis):

@@ -21,6 +21,7 @@ from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller
 from kinematics.cam.profile import space_angles
 from kinematics.cam.response import FollowerTrain, Response
 from kinematics.errors import DimensionError
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam
@@ -122,7 +123,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.train is not None and self.motion.rate <= 0.0:
-            faults.append(("/motion/speed", "a vibration needs a positive speed"))
+            faults.append(("/motion/speed", compose("analyses-vibration-needs-speed")))
         return faults
 
     def build_answer(self) -> JsonObject:
@@ -130,7 +131,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         at, speed, time = self.motion.list_inputs()
         contour, follower = self.mechanism.build_contour(), self.mechanism.build_follower()
         if len(at) * len(contour.points) > MAX_EFFORT:
-            raise MechanismError("/profile", "too many points and positions; reduce one of them")
+            raise MechanismError("/profile", compose("analyses-too-many-points-and-positions"))
         rotation = self.mechanism.rotation
         contact = contour.follow(follower, np.radians(at), rotation)
         unit = 180.0 / math.pi if isinstance(follower, OscillatingRoller | OscillatingFlat) else 1.0

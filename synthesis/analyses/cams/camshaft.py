@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from kinematics.cam.dynamics import Camshaft, RunningCam
 from kinematics.cam.finished.motion_program import measure_program
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenRequest, Family
 from synthesis.analyses.cams.cam import EXAMPLE, Load
 from synthesis.mechanisms import MechanismError
@@ -27,9 +28,7 @@ Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
 def _require_plate_cam(cam: object) -> object:
     if isinstance(cam, dict) and cam.get("type", "cam") != "cam":
-        raise PydanticCustomError(
-            "no_plate_cam", "a camshaft carries plate cams only; analyse other cams by themselves"
-        )
+        raise PydanticCustomError("no_plate_cam", compose("analyses-camshaft-needs-plate-cams"))
     return cam
 
 
@@ -81,9 +80,9 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
         """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.motion.rate <= 0.0:
-            faults.append(("/motion/speed", "the shaft needs a positive speed"))
+            faults.append(("/motion/speed", compose("analyses-camshaft-needs-speed")))
         if self.motion.acceleration != 0.0:
-            faults.append(("/motion/acceleration", "the torques are for a constant speed; leave it out"))
+            faults.append(("/motion/acceleration", compose("analyses-camshaft-turns-steadily")))
         return faults
 
     def build_answer(self) -> JsonObject:

@@ -15,6 +15,7 @@ from kinematics.gear.bevel import GLEASON_TEETH, RAO_TEETH, BevelPair
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
+from kinematics.message import compose
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer
@@ -55,7 +56,7 @@ class GivenHelicalPair(Statement):
         """
         second = self.shaft_angle - self.helix_angle
         if not abs(second) < 85.0:
-            raise MechanismError("/helix_angle", f"the second gear would need a helix angle of {second:g}°")
+            raise MechanismError("/helix_angle", compose("analyses-second-helix-angle-too-large", angle=f"{second:g}"))
         angles = math.radians(self.helix_angle), math.radians(second)
         pressure = math.radians(self.normal_pressure_angle)
         first, other = (
@@ -195,7 +196,7 @@ class BevelPairRequest(_PairRequest):
     def find_errors(self) -> list[tuple[str, str]]:
         """Return an error if the gear has fewer teeth than its pinion."""
         if self.mechanism.teeth[0] > self.mechanism.teeth[1]:
-            return [("/mechanism/teeth", "give the pinion first; the gear has at least as many teeth")]
+            return [("/mechanism/teeth", compose("analyses-pinion-not-first"))]
         return []
 
     def build_answer(self) -> JsonObject:

@@ -22,6 +22,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
 from kinematics.gear.train import USUAL_FRICTION, OrdinaryTrain, TrainStage
 from kinematics.gear.worm import WormDrive
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
 from synthesis.analyses.gears.given_train import GivenGearTrain
@@ -89,13 +90,13 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         faults = super().find_errors()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
-                faults.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
+                faults.append((f"/mechanism/idlers/{number}/stage", compose("analyses-stage-unknown")))
         for number, stage in enumerate(self.mechanism.stages):
             faults += [(f"/mechanism/stages/{number}{path}", detail) for path, detail in stage.find_type_errors()]
             if stage.type != "external" and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
-                faults.append((f"/mechanism/stages/{number}/type", "only an external stage has idlers"))
+                faults.append((f"/mechanism/stages/{number}/type", compose("analyses-idlers-need-external-stage")))
             if stage.shift is not None and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
-                faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
+                faults.append((f"/mechanism/stages/{number}/shift", compose("analyses-idlers-exclude-shift")))
         faults += self._find_strength_errors()
         if not faults:
             faults += self._find_distance_errors() + self._find_face_errors()
@@ -104,7 +105,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         if not faults:
             faults += self._find_locking_errors()
         if self.mesh_efficiency is not None and all(stage.type == "worm" for stage in self.mechanism.stages):
-            faults.append(("/mesh_efficiency", "the loss of a worm follows from its own friction; leave it out"))
+            faults.append(("/mesh_efficiency", compose("analyses-worm-has-own-loss")))
         return faults
 
     @property
@@ -119,12 +120,11 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             # Without a torque, friction locks nothing, and the speeds can still be analyzed.
             return []
         worms, back = self.list_locked_worms, self.has_backward_flow
-        detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear at any torque"
-        faults = [(f"/mechanism/stages/{k}/friction", f"with this friction {detail}") for k in worms]
+        message = "analyses-gear-cannot-drive-worm" if back else "analyses-worm-cannot-drive-gear"
+        faults = [(f"/mechanism/stages/{k}/friction", compose(message)) for k in worms]
         # Only a reversed power flow divides by the shares. In forward flow, a share of 0 gives an output torque of 0.
         if back and not worms and any(0.0 in stage for stage in list_power_shares(self)):
-            detail = "with this friction a mesh loses all power, so that the output cannot drive"
-            faults.append(("/friction", detail))
+            faults.append(("/friction", compose("analyses-output-cannot-drive")))
         return faults
 
     @classmethod
@@ -150,18 +150,18 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             wrong += stated.find_helix_errors()
         faults = [(f"/strength{path}", detail) for path, detail in wrong]
         faults += [
-            (f"/mechanism/stages/{number}/type", f"the strength of a stage that is {stage.type} is not estimated")
+            (f"/mechanism/stages/{number}/type", compose("analyses-stage-not-rated", type=stage.type))
             for number, stage in enumerate(self.mechanism.stages)
             if stage.type not in RATED_STAGE_TYPES
         ]
         # The faces are sized by the power; without power any face would suffice.
         if self.input_torque == 0.0 or float(self.motion.list_inputs()[1][0]) == 0.0:
-            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
+            faults.append(("/strength", compose("analyses-torque-and-speed-missing")))
         if stated.allowable_bending is None and stated.allowable_contact is None:
             faults += [
                 (
                     f"/mechanism/stages/{number}/face_width",
-                    "give it, or the allowable stresses from which it is computed",
+                    compose("analyses-face-width-missing"),
                 )
                 for number, stage in enumerate(self.mechanism.stages)
                 if stage.face_width is None
@@ -175,7 +175,10 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         except DimensionError:
             return []
         return [
-            (f"/mechanism/stages/{number}/centre_distance", f"the teeth have the distance {has:.9g}; leave it out")
+            (
+                f"/mechanism/stages/{number}/centre_distance",
+                compose("analyses-distance-of-teeth-differs", distance=f"{has:.9g}"),
+            )
             for number, (stage, has) in enumerate(zip(self.mechanism.stages, distances, strict=True))
             if stage.centre_distance is not None and abs(stage.centre_distance - has) > DISTANCE_TOLERANCE * has
         ]
@@ -189,7 +192,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
                 far = build_train_stage(stage, angle).cones(angle).cone_distance
                 # A face as wide as the cone distance is refused, too, because its teeth would end in a point.
                 if not stage.face_width < far:
-                    detail = f"expected less than the cone distance of these gears, {far:.6g}"
+                    detail = compose("analyses-face-reaches-apex", distance=f"{far:.6g}")
                     faults.append((f"/mechanism/stages/{number}/face_width", detail))
         return faults
 

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Real
 from kinematics.gear.gearbox import compute_layshaft_ratios, list_spindle_speeds
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer
 from synthesis.model.json_object import JsonObject
@@ -131,10 +132,12 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
         faults = super().find_errors()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
-            faults.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
+            faults.append(("/engaged", compose("analyses-one-pair-per-stage", count=len(stages))))
         for k, (at, stage) in enumerate(zip(self.engaged or (), stages, strict=False)):
             if at >= len(stage.pairs):
-                faults.append((f"/engaged/{k}", f"stage {k + 1} has {len(stage.pairs)} pairs"))
+                faults.append(
+                    (f"/engaged/{k}", compose("analyses-stage-has-fewer-pairs", number=k + 1, count=len(stage.pairs)))
+                )
         return faults
 
     def build_answer(self) -> JsonObject:
@@ -179,11 +182,11 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
         faults = super().find_errors()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
-                faults.append((f"/mechanism/gears/{k}", "give both gears, or neither for direct drive"))
+                faults.append((f"/mechanism/gears/{k}", compose("analyses-one-gear-of-pair")))
         if self.gear == "reverse" and self.mechanism.reverse is None:
-            faults.append(("/gear", "there is no reverse gear"))
+            faults.append(("/gear", compose("analyses-reverse-gear-missing")))
         elif self.gear != "reverse" and self.gear > len(self.mechanism.gears):
-            faults.append(("/gear", f"there are {len(self.mechanism.gears)} forward gears"))
+            faults.append(("/gear", compose("analyses-forward-gears", count=len(self.mechanism.gears))))
         return faults
 
     def build_answer(self) -> JsonObject:

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import EXTERNAL, INTERNAL, Mesh, Train, compute_speed_ratio
+from kinematics.message import compose
 from synthesis.analyses.gears.given_train import GivenRatio
 from synthesis.model.problem import Flag, PositiveNumber, Statement
 
@@ -91,15 +92,15 @@ class GivenPlanetaryTrain(Statement):
         """Return errors that the validation of single fields cannot find."""
         if self.meshes is not None:
             if self.arrangement is not None or self.teeth is not None:
-                return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]
+                return [("/mechanism/meshes", compose("analyses-arrangement-and-meshes"))]
             return [
-                (f"/mechanism/meshes/{k}", "its two gears and their carrier must be three different bodies")
+                (f"/mechanism/meshes/{k}", compose("analyses-mesh-of-equal-bodies"))
                 for k, row in enumerate(self.meshes)
                 if len({row.first, row.second, row.carrier}) < 3
             ]
         if self.arrangement not in ARRANGEMENTS:
-            return [("/mechanism/arrangement", f"expected one of {', '.join(ARRANGEMENTS)}, or meshes")]
+            return [("/mechanism/arrangement", compose("analyses-arrangement-unknown", names=", ".join(ARRANGEMENTS)))]
         names = ARRANGEMENTS[self.arrangement].gear_names
         if set(self.teeth or {}) != set(names):
-            return [("/mechanism/teeth", f"expected teeth for {', '.join(names)}")]
+            return [("/mechanism/teeth", compose("analyses-teeth-of-other-gears", names=", ".join(names)))]
         return []

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator
 
 from kinematics.gear.train import OrdinaryTrain, StageKind
+from kinematics.message import compose
 from synthesis.model.gears.request import (
     MAX_TEETH,
     MIN_TEETH,
@@ -70,19 +71,21 @@ class GivenStage(StageType):
     @classmethod
     def _validate_driver(cls, driver: int, info: ValidationInfo) -> int:
         worm = info.data.get("type") == "worm"
-        if not (1 <= driver <= MAX_THREADS if worm else driver >= MIN_TEETH):
-            raise ValueError(f"expected 1 to {MAX_THREADS} threads" if worm else f"expected at least {MIN_TEETH} teeth")
+        if worm and not 1 <= driver <= MAX_THREADS:
+            raise ValueError(compose("analyses-thread-count-out-of-range", most=MAX_THREADS))
+        if not worm and driver < MIN_TEETH:
+            raise ValueError(compose("analyses-too-few-teeth", least=MIN_TEETH))
         return driver
 
     def find_type_errors(self) -> list[tuple[str, str]]:
         """Return errors of fields and gears that the type does not permit, as pairs (path in the stage, detail)."""
         faults = super().find_type_errors()
         if self.type not in ("external", "helical") and self.shift is not None:
-            faults.append(("/shift", f"a stage that is {self.type} has no shift"))
+            faults.append(("/shift", compose("analyses-stage-without-shift", type=self.type)))
         if self.type != "internal" and self.addendum is not None:
-            faults.append(("/addendum", "only an internal stage can have addenda other than one module"))
+            faults.append(("/addendum", compose("analyses-addendum-needs-ring")))
         if self.type == "internal" and self.driver == self.driven:
-            faults.append(("/driven", "a ring has more teeth than its pinion"))
+            faults.append(("/driven", compose("analyses-ring-too-small")))
         return faults
 
     @classmethod
@@ -110,7 +113,7 @@ class GivenRatio(Statement):
         same = self.numerator == ratio * self.denominator
         if same and math.isclose(self.value, float(ratio), rel_tol=RATIO_TOLERANCE):
             return []
-        return [("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out")]
+        return [("/mechanism/ratio", compose("analyses-ratio-of-teeth-differs", ratio=str(ratio)))]
 
 
 class GivenGearTrain(Statement):

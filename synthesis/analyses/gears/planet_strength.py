@@ -13,6 +13,7 @@ from kinematics.gear.assembly import is_coaxial
 from kinematics.gear.planetary import Train
 from kinematics.gear.power import PowerFlow
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Gear
+from kinematics.message import compose
 from synthesis.analyses.gears.given_planetary_train import GivenPlanetaryTrain
 from synthesis.model.dynamics.request import METRES_PER_UNIT
 from synthesis.model.gears.planet_strength import MeshLoad, PlanetStrength, count_planes, describe_strengths
@@ -62,11 +63,11 @@ def find_strength_errors(mechanism: GivenPlanetaryTrain, method: PlanetStrength)
     faults = [(f"/strength{path}", detail) for path, detail in method.find_errors()]
     arrangement = ARRANGEMENTS.get(mechanism.arrangement or "")
     if arrangement is None:
-        return [*faults, ("/strength", "give an arrangement; meshes alone do not define the gears")]
+        return [*faults, ("/strength", compose("analyses-strength-needs-arrangement"))]
     if arrangement.bevel:
         return [
             *faults,
-            ("/strength", "the strength of a bevel differential is not estimated, only that of spur teeth"),
+            ("/strength", compose("analyses-bevel-differential-not-rated")),
         ]
     assert mechanism.teeth is not None
     # Such gears would need profile shifts, which the statement does not contain.
@@ -74,21 +75,24 @@ def find_strength_errors(mechanism: GivenPlanetaryTrain, method: PlanetStrength)
         faults.append(
             (
                 "/mechanism/teeth",
-                "unshifted gears with these teeth are not coaxial; strength is estimated for unshifted gears only",
+                compose("analyses-unshifted-gears-not-coaxial"),
             )
         )
     faces, planes = mechanism.face_widths, count_planes(arrangement)
     if faces is not None and len(faces) != planes:
-        faults.append(("/mechanism/face_widths", f"expected {planes}, one for each plane"))
+        faults.append(("/mechanism/face_widths", compose("analyses-one-face-width-per-plane", count=planes)))
     if faces is None and not method.required_safeties:
-        faults.append(("/mechanism/face_widths", "give it, or the allowable stresses from which it is computed"))
+        faults.append(("/mechanism/face_widths", compose("analyses-face-width-missing")))
     try:
         whole = parse_strength_train(mechanism)
     except ValidationError as error:
         wrong = [("/".join(["/mechanism", *map(str, one["loc"])]), one["msg"]) for one in error.errors()]
         return [*faults, *wrong]
     unknown = [name for name in whole.addendum if name not in arrangement.places]
-    faults += [(f"/mechanism/addendum/{name}", f"expected one of {', '.join(arrangement.places)}") for name in unknown]
+    faults += [
+        (f"/mechanism/addendum/{name}", compose("analyses-name-unknown", names=", ".join(arrangement.places)))
+        for name in unknown
+    ]
     return [*faults, *((f"/strength{path}", detail) for path, detail in method.find_planet_errors(whole.planets))]
 
 

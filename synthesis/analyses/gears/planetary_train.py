@@ -13,6 +13,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.gear.planetary import GROUND, Speeds, Train, solve_speeds
 from kinematics.gear.power import PowerFlow, solve_power_flow
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
 from synthesis.analyses.gears.given_planetary_train import Body, GivenPlanetaryTrain
@@ -116,18 +117,22 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             *((f"/mechanism/{part}", getattr(self.mechanism, part)) for part in ("input", "output", "fixed")),
         ]
         known = {*train.bodies, GROUND, None}
-        faults = [(path, f"expected one of {', '.join(train.bodies)}") for path, body in named if body not in known]
+        faults = [
+            (path, compose("analyses-name-unknown", names=", ".join(train.bodies)))
+            for path, body in named
+            if body not in known
+        ]
         loaded = [
             *((f"/torques/{body}", body) for body in self.torques or ()),
             *((f"/loads/{k}", body) for k, body in enumerate(self.loads or ())),
         ]
         faults += [
-            (path, f"expected one of the members {', '.join(train.members)}")
+            (path, compose("analyses-member-unknown", names=", ".join(train.members)))
             for path, body in loaded
             if body not in train.members
         ]
         if self.speeds is None and self.mechanism.input is None and not self.include:
-            faults.append(("/speeds", "give known speeds, or the mechanism's input and fixed member"))
+            faults.append(("/speeds", compose("analyses-known-speeds-missing")))
         return faults or [*self._find_table_errors(), *self._find_ratio_errors(), *self._find_strength_errors()]
 
     def _find_strength_errors(self) -> list[tuple[str, str]]:
@@ -136,15 +141,13 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             return []
         faults = find_strength_errors(self.mechanism, self.strength)
         if self.mechanism.input is None:
-            faults.append(("/mechanism/input", "give it; it turns with the speed of the motion"))
+            faults.append(("/mechanism/input", compose("analyses-strength-needs-input")))
         if self.speeds is not None:
-            faults.append(("/speeds", "strength needs the speed of the motion; give input and fixed member instead"))
+            faults.append(("/speeds", compose("analyses-strength-excludes-speeds")))
         if self.locked:
-            faults.append(
-                ("/locked", "the torque of a clutch is unknown, so that no strength can be computed; leave one out")
-            )
+            faults.append(("/locked", compose("analyses-strength-excludes-clutches")))
         if not any((self.torques or {}).values()) or float(self.motion.list_inputs()[1][0]) == 0.0:
-            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
+            faults.append(("/strength", compose("analyses-torque-and-speed-missing")))
         return faults
 
     def _find_ratio_errors(self) -> list[tuple[str, str]]:
@@ -153,28 +156,28 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             return faults
         if self.wanted_ratio is None or (self.mechanism.input is not None and self.mechanism.output is not None):
             return []
-        return [("/wanted_ratio", "give the mechanism's input and output, too")]
+        return [("/wanted_ratio", compose("analyses-drift-needs-input-and-output"))]
 
     def _find_table_errors(self) -> list[tuple[str, str]]:
         """Return errors of a requested shift table."""
         if not self.include:
-            return [] if self.elements is None else [("/elements", 'ask for the table too: "include": ["shift_table"]')]
+            return [] if self.elements is None else [("/elements", compose("analyses-elements-need-table"))]
         train, driving, driven = self.mechanism.build_train(), self.mechanism.input, self.mechanism.output
         ends = [(part, body) for part, body in (("input", driving), ("output", driven)) if body is not None]
         faults = [
-            (f"/mechanism/{part}", f"expected one of the members {', '.join(train.members)}")
+            (f"/mechanism/{part}", compose("analyses-member-unknown", names=", ".join(train.members)))
             for part, body in ends
             if body not in train.members
         ]
         if driven is None:
-            faults.append(("/mechanism/output", "give the mechanism's output for the shift table"))
+            faults.append(("/mechanism/output", compose("analyses-table-needs-output")))
         elif driven == driving:
-            faults.append(("/mechanism/output", f"{driven} is the input"))
+            faults.append(("/mechanism/output", compose("analyses-output-is-input", member=driven)))
         if driving is None and self.elements is None:
-            faults.append(("/elements", "give the mechanism's input, or clutches from the input shaft to members"))
+            faults.append(("/elements", compose("analyses-table-needs-input")))
         faults += find_element_errors(train, driving, self.elements or [])
         if not faults and (states := count_states(train, driving, self._list_elements())) > MAX_STATES:
-            faults.append(("/elements", f"{states} choices of engaged elements are more than {MAX_STATES}"))
+            faults.append(("/elements", compose("analyses-too-many-states", count=states, most=MAX_STATES)))
         return faults
 
     def _list_elements(self) -> list[GivenElement]:

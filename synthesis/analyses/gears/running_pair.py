@@ -26,6 +26,7 @@ from kinematics.gear.flanks import (
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.profile import draw_half_space
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from kinematics.message import compose
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.gears.gear_pair import MILLIMETRE, RAD_PER_S_PER_RPM
 from synthesis.mechanisms.base import MechanismError
@@ -145,10 +146,10 @@ class GivenGearPair(Statement):
         # Shifted external gears at their centre distance lose clearance, so their tips are shortened by this amount.
         shortening = compute_tip_shortening(Mesh(full[0], full[1], self.centre_distance))
         one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
-        for gear, name in ((one, "first"), (two, "second")):
+        for gear, message in ((one, "analyses-first-gear-without-flank"), (two, "analyses-second-gear-without-flank")):
             # Without a flank above the base circle there is no involute.
             if not gear.internal and gear.tip_radius <= gear.base_radius:
-                raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
+                raise MechanismError("/shift", compose(message))
         # The straight flank of the rack ends above its rounded tip, and only this depth cuts the involute. The cosine
         # converts it to modules of the plane of rotation.
         depth = compute_straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
@@ -284,11 +285,11 @@ class RunningPairRequest(AnalysisRequest):
         """Return errors that the validation of single fields cannot find."""
         given, faults = self.mechanism, []
         if given.internal and given.teeth[1] <= given.teeth[0]:
-            faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; give the ring second"))
+            faults.append(("/mechanism/teeth", compose("analyses-ring-not-second")))
         if given.cutter_teeth is not None and not given.internal:
-            faults.append(("/mechanism/cutter_teeth", "only a ring is shaped by a cutter; leave it out"))
+            faults.append(("/mechanism/cutter_teeth", compose("analyses-cutter-needs-ring")))
         if given.cutter_teeth is not None and given.cutter_teeth >= given.teeth[1]:
-            faults.append(("/mechanism/cutter_teeth", "a cutter has fewer teeth than the ring that it shapes"))
+            faults.append(("/mechanism/cutter_teeth", compose("analyses-cutter-too-large")))
         return [*faults, *self._find_strength_errors()]
 
     def _find_strength_errors(self) -> list[tuple[str, str]]:
@@ -300,11 +301,11 @@ class RunningPairRequest(AnalysisRequest):
             wrong += stated.find_helix_errors()
         faults = [(f"/strength{path}", detail) for path, detail in wrong]
         if given.helix_angle != 0.0 and given.internal:
-            faults.append(("/strength", "the strength of helical rings is not estimated; leave the helix angle out"))
+            faults.append(("/strength", compose("analyses-helical-ring-not-rated")))
         if self.speed_rpm == 0.0:
-            faults.append(("/speed_rpm", "no power is transmitted at rest"))
+            faults.append(("/speed_rpm", compose("analyses-no-power-at-rest")))
         if given.face_width is None and stated.allowable_bending is None and stated.allowable_contact is None:
-            faults.append(("/mechanism/face_width", "give it, or the allowable stresses from which it is computed"))
+            faults.append(("/mechanism/face_width", compose("analyses-face-width-missing")))
         return faults
 
     def build_answer(self) -> JsonObject:

@@ -18,6 +18,7 @@ from pydantic import Field
 
 from kinematics.gear.planetary import Train, solve_speeds
 from kinematics.gear.power import solve_power_flow
+from kinematics.message import compose
 from synthesis.model.answer import Answer
 from synthesis.model.gears.ratio_target import parse_decimal
 from synthesis.model.json_object import JsonObject
@@ -85,23 +86,23 @@ def find_element_errors(train: Train, driving: str | None, elements: Sequence[Gi
     for k, element in enumerate(elements):
         path = f"/elements/{k}"
         if (element.brake is None) == (element.clutch is None):
-            faults.append((path, "give either the member that a brake holds or the two members that a clutch connects"))
+            faults.append((path, compose("analyses-brake-or-clutch")))
             continue
         if element.name in [other.name for other in elements[:k]]:
-            faults.append((f"{path}/name", "another element has this name"))
+            faults.append((f"{path}/name", compose("analyses-element-name-repeats")))
         unknown = [body for body in element.list_bodies if body not in known]
         part = "brake" if element.clutch is None else "clutch"
         if unknown or (element.brake == INPUT_NAME and INPUT_NAME not in train.members):
-            faults.append((f"{path}/{part}", f"expected members of {', '.join(known)}"))
+            faults.append((f"{path}/{part}", compose("analyses-element-member-unknown", names=", ".join(known))))
         elif len(set(element.list_bodies)) < len(element.list_bodies):
-            faults.append((f"{path}/clutch", "a clutch must connect two different members"))
+            faults.append((f"{path}/clutch", compose("analyses-clutch-of-one-member")))
         elif (
             driving is None
             and element.clutch is not None
             and INPUT_NAME in element.clutch
             and INPUT_NAME in train.members
         ):
-            detail = "a member is named input: give it another name, or give the mechanism's input"
+            detail = compose("analyses-member-named-input")
             faults.append((f"{path}/clutch", detail))
     return faults
 

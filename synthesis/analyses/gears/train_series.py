@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field
 
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.gears.drift import WANTED_DESCRIPTION, Drift, describe_drift
 from synthesis.analyses.gears.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
@@ -19,6 +20,13 @@ from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.request import ExactRatio
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Number, Statement
+
+MISSING_MEMBERS = {
+    "input": "analyses-unit-needs-input",
+    "output": "analyses-unit-needs-output",
+    "fixed": "analyses-unit-needs-fixed-member",
+}
+"""Ids of the messages about members that a planetary unit lacks, by the fields of the members."""
 
 GivenUnit = Annotated[GivenPlanetaryTrain | GivenGearTrain, Discriminator("type")]
 
@@ -93,13 +101,13 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
         for k, unit in enumerate(self.mechanism.units):
             if isinstance(unit, GivenPlanetaryTrain):
                 own = unit.find_errors()
-                named = [part for part in ("input", "output", "fixed") if getattr(unit, part) is None]
-                own += [(f"/mechanism/{part}", f"give the {part} of the unit") for part in named]
+                named = [part for part in MISSING_MEMBERS if getattr(unit, part) is None]
+                own += [(f"/mechanism/{part}", compose(MISSING_MEMBERS[part])) for part in named]
                 if not own:
                     # Examine speeds only after the fields, because the equations need valid members.
                     own = PlanetaryAnalysisRequest(mechanism=unit).find_errors()
                 if not own and unit.compute_ratio() is None:
-                    own = [("/mechanism", "with these members the train transmits no motion")]
+                    own = [("/mechanism", compose("analyses-unit-transmits-no-motion"))]
             else:
                 # Worms lose power by their own friction; other meshes by the given efficiency.
                 driving = GearTrainAnalysisRequest(

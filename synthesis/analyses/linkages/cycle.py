@@ -7,6 +7,7 @@ import numpy as np
 from kinematics.linkage.planar.branches import Branch, compute_cycle, compute_cycle_on_branch, count_fastest_turns
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
+from kinematics.message import compose
 
 MAX_EFFORT = 200
 """Maximum effort of an analysis for which a client waits: a few seconds."""
@@ -31,7 +32,7 @@ def list_branches(mechanism: Mechanism) -> list[Branch]:
         If they cannot be listed, or if this takes too long for a waiting client.
     """
     if estimate_effort(mechanism) > MAX_EFFORT:
-        raise TopologyError("too many assemblies, or too many turns until the motion repeats, to list all circuits")
+        raise TopologyError(compose("analyses-too-many-circuits"))
     return find_branches(mechanism)
 
 

@@ -16,6 +16,7 @@ from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import MAX_CONDITION, Reactions, compute_reactions
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from synthesis.analyses.linkages.cyclic_statistics import (
     compute_mean,
     compute_rms,
@@ -120,10 +121,14 @@ def find_force_peaks(
     course = _drive_machine(machine, at, np.full(len(at), speed), 0.0, bool(block.loads))
     for status, position in zip(_list_status(course), at, strict=True):
         if status not in DETERMINED_STATUSES:
-            raise UndeterminedForcesError(f"{status} at {position:.4g}")
+            raise UndeterminedForcesError(
+                compose("analyses-status-at-position", status=status, position=f"{position:.4g}")
+            )
     for name, difference in _compare_routes(course.reactions, course.balance).items():
         if difference is None or not difference <= AGREEMENT:
-            raise UndeterminedForcesError(f"the check {name} finds a difference of {difference}")
+            raise UndeterminedForcesError(
+                compose("analyses-force-check-disagrees", check=name, difference=str(difference))
+            )
     closed = is_closed(mechanism, at, course.reactions.drive, find_period_turns(block, mechanism))
     drive_peaks, found = _find_extremes(machine, course, at, 0.0, closed)
     least = Peak(-drive_peaks["min"], drive_peaks["at_min"])
@@ -154,10 +159,17 @@ def _find_largest_index(course: DrivenMachine, extremes: JsonObject) -> tuple[fl
     """Find the maximum joint force index, None if a dead centre makes it infinite; also return warnings."""
     dead = course.valid & ~(course.reactions.condition < MAX_CONDITION) & course.reactions.determined
     if dead.any():
-        return None, ["joint_force_index: infinite at a dead centre"]
+        return None, [compose("analyses-force-index-infinite")]
     largest = extremes["index"]["max"]
     if largest > HIGH_INDEX:
-        return largest, [f"joint_force_index: {largest:.3g}, above {HIGH_INDEX:g}, at {extremes['index']['at']:.4g}"]
+        return largest, [
+            compose(
+                "analyses-force-index-high",
+                index=f"{largest:.3g}",
+                limit=f"{HIGH_INDEX:g}",
+                position=f"{extremes['index']['at']:.4g}",
+            )
+        ]
     return largest, []
 
 

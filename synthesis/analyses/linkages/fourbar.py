@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -35,6 +35,7 @@ from kinematics.linkage.fourbar import (
     positions,
 )
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose
 from synthesis.mechanisms import GivenFourbar, GivenGearedFivebar, GivenSkeleton, MechanismError
 from synthesis.model.answer import Answer
 from synthesis.model.json_object import JsonObject
@@ -158,7 +159,7 @@ def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> Json
     """
     stated = extract_fourbar(mechanism)
     if stated is None:
-        raise MechanismError("", f"only a pin-jointed fourbar has {' and '.join(topics)}")
+        raise MechanismError("", compose("analyses-only-fourbar-has-topics", topics=_list_topics(topics)))
     reference = float(mechanism.reference_input)
     make: dict[Topic, Callable[[], JsonObject]] = {
         "cognates": lambda: _describe_cognates(stated, reference),
@@ -169,7 +170,14 @@ def analyze_fourbar(mechanism: Mechanism, at: Real, topics: list[Topic]) -> Json
     try:
         return {topic: describe() if topic in topics else None for topic, describe in make.items()}
     except DimensionError:
-        raise MechanismError("", "the coupler point lies on a moving pivot: its curve is a circle") from None
+        raise MechanismError("", compose("analyses-coupler-point-on-pivot")) from None
+
+
+def _list_topics(topics: Sequence[Topic]) -> str:
+    listed: str = topics[0]
+    for topic in topics[1:]:
+        listed = compose("analyses-topics", topics=listed, topic=topic)
+    return listed
 
 
 def _describe_cognates(assembled: AssembledFourbar, reference: float) -> JsonObject:

@@ -12,6 +12,7 @@ from kinematics.linkage.clearance.scene import RangeError
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import find_cycle_from_reference
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from synthesis.analyses.linkages.cycle import find_cycle
 from synthesis.model.json_object import JsonObject
 from synthesis.model.layout import LayoutSizes
@@ -56,13 +57,13 @@ def lay_out_range(mechanism: Mechanism, requested: LayoutSizes, used: tuple[floa
         if requested.over == "cycle":
             used = find_cycle(mechanism)
         if used is None:
-            return _build_empty_layout("the mechanism cannot move through the used range")
+            return _build_empty_layout(compose("analyses-layout-range-blocked"))
         turn = math.inf if slides else find_cycle_from_reference(mechanism)
         low, high = sorted(used)
         high = min(high, low + turn)
         inputs = np.linspace(low, high, PROBE_COUNT + 2)[1:-1] if high > low else np.array([low])
         if not drive(mechanism, inputs, order=0).valid.all():
-            return _build_empty_layout("the mechanism cannot be assembled over the whole motion")
+            return _build_empty_layout(compose("analyses-layout-not-assembled"))
         found = core.arrange_planes(
             mechanism,
             low,

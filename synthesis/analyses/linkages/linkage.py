@@ -16,6 +16,7 @@ from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.clearance.scene import RangeError
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.budget import BudgetError, require_values
 from synthesis.analyses.input_motion import StatedMotion, Sweep
@@ -119,25 +120,22 @@ class LinkageAnalysisRequest(AnalysisRequest):
         moving = [link for link in mechanism.links if link != GROUND]
         for name, point in self.points.items():
             if point.link not in moving:
-                faults.append(
-                    (f"/points/{escape_pointer(name)}/link", f"no link in motion; they are {', '.join(moving)}")
-                )
+                detail = compose("analyses-link-not-moving", names=", ".join(moving))
+                faults.append((f"/points/{escape_pointer(name)}/link", detail))
         if self.dynamics is not None:
             faults += find_dynamics_errors(self.dynamics, mechanism)
             if self.dynamics.flywheel is not None and self.motion.rate == 0.0:
-                faults.append(("/dynamics/flywheel", "a flywheel needs a speed"))
+                faults.append(("/dynamics/flywheel", compose("analyses-flywheel-needs-speed")))
         return faults
 
     def build_answer(self) -> JsonObject:
         """Build the answer over the motion, in the form of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.build_mechanism()
         if decompose(mechanism).left and estimate_effort(mechanism) > MAX_EFFORT:
-            raise MechanismError("", "this mechanism has too many links outside dyads to be solved at once")
+            raise MechanismError("", compose("analyses-too-many-links-outside-dyads"))
         slide, motion = mechanism.has_slide_input, self.motion
         if slide and motion.speed_rpm is not None:
-            raise MechanismError(
-                "", "a slider drives this mechanism; give its speed as `speed`, length units per second"
-            )
+            raise MechanismError("", compose("analyses-slider-speed-as-length"))
         if slide and isinstance(motion, Sweep) and None in (motion.start, motion.end):
             toggles = dict(zip(("start", "end"), find_cycle(mechanism), strict=True))
             stated = {name: getattr(motion, name) for name in toggles if getattr(motion, name) is not None}
@@ -155,10 +153,8 @@ class LinkageAnalysisRequest(AnalysisRequest):
                 planes["layout"] = lay_out_range(mechanism, self.layout, used).model_dump()
             except RangeError as error:
                 most = error.most if slide else math.degrees(error.most)
-                unit = "length units" if slide else "degrees"
-                raise BudgetError(
-                    "/motion/to", f"at most {most:.6g} {unit} for a layout, counted from `from`"
-                ) from None
+                message = "analyses-layout-stroke-too-long" if slide else "analyses-layout-range-too-long"
+                raise BudgetError("/motion/to", compose(message, most=f"{most:.6g}")) from None
         met = analyze_targets(self.mechanism, self.targets, self.manufacture) if self.targets else {}
         forces = {}
         if self.dynamics is not None:

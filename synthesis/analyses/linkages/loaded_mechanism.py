@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from synthesis.analyses.linkages.linkage import LinkageAnalysisRequest
 from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.link_bodies import escape_pointer
@@ -58,7 +59,7 @@ def find_loaded_errors(
     except KinematicsError as error:
         return [("/mechanism", str(error))]
     if shaft and built.has_slide_input:
-        return [("/mechanism", "a slider drives this mechanism; a shaft must drive it")]
+        return [("/mechanism", compose("analyses-shaft-must-drive"))]
     return request.find_errors()
 
 
@@ -71,9 +72,7 @@ def find_driven_errors(
         return None, faults
     built = build_loaded_request(mechanism, dynamics, unit).mechanism.build_mechanism()
     if built.has_slide_input and motion.speed_rpm is not None:
-        faults.append(
-            ("/motion/speed_rpm", "a slider drives this mechanism; give its speed as `speed`, length units per second")
-        )
+        faults.append(("/motion/speed_rpm", compose("analyses-slider-speed-as-length")))
     return built, faults
 
 

@@ -20,6 +20,7 @@ from kinematics.linkage.planar.limits import find_limit_positions, find_referenc
 from kinematics.linkage.planar.link_points import link_point
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.planar.program import build_program
+from kinematics.message import compose
 from synthesis.analyses.linkages.cycle import list_branches
 from synthesis.analyses.linkages.fourbar import extract_fourbar
 from synthesis.model.json_object import JsonObject
@@ -182,19 +183,13 @@ def _describe_undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[st
     """Describe results that are missing in the answer, with the reason."""
     notes = []
     if decompose(mechanism).left and not sines:
-        notes.append(
-            "transmission_angle: no link is carried by three legs on the input and the ground, so that no leg pushes "
-            "along a path of its own; torque_ratio and force_ratio describe the transmission of force"
-        )
+        notes.append(compose("analyses-no-pushing-leg"))
     elif mechanism.redundant:
-        notes.append("transmission_angle: constraints are redundant, so that the pushing link is not determined")
+        notes.append(compose("analyses-pushing-link-undetermined"))
     elif not sines:
-        notes.append("transmission_angle: gears alone drive every link, so that no link pushes another")
+        notes.append(compose("analyses-no-pushing-link"))
     if has_given_up(mechanism):
-        notes.append(
-            "valid: the links have very different lengths; the motion was followed up to the maximum number of "
-            "steps, and positions beyond are reported as not valid although they may exist"
-        )
+        notes.append(compose("analyses-motion-followed-in-part"))
     return notes
 
 
@@ -203,11 +198,16 @@ def _describe_circuits(mechanism: Mechanism, tracked: bool, notes: list[str]) ->
     try:
         branches = list_branches(mechanism)
     except TopologyError as error:
-        return {"toggles": [], "circuits": [], "limits": {}, "notes": [*notes, f"circuits, toggles, limits: {error}"]}
+        return {
+            "toggles": [],
+            "circuits": [],
+            "limits": {},
+            "notes": [*notes, compose("analyses-circuits-unknown", reason=str(error))],
+        }
     scale = (lambda x: x) if mechanism.has_slide_input else math.degrees
     here = find_reference_branch(mechanism, branches)
     if here is None:
-        notes = [*notes, "limits: the reference lies where several branches meet, or on none"]
+        notes = [*notes, compose("analyses-limits-unknown")]
     circuits: dict[int, list[JsonObject]] = {}
     for branch in branches:
         listed = circuits.setdefault(branch.circuit, [])

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinematics.linkage.variation import measure_deviations
+from kinematics.message import compose
 from synthesis.manufacture.linkage import Linkage, build_task, extract_linkage, find_target_inputs
 from synthesis.manufacture.report import report_manufacture
 from synthesis.mechanisms import GivenMechanism
@@ -19,7 +20,8 @@ from synthesis.model.manufacture.request import Exactness, ManufactureTask, Requ
 SAMPLE_COUNT = 1440
 """Number of inputs per turn on the first grid of the search for the input nearest to a target."""
 
-UNSUPPORTED_MESSAGE = "only fourbars and slider-cranks given by their dimensions and driven by the crank are supported"
+UNSUPPORTED_MESSAGE = "analyses-targets-need-fourbar-or-slider-crank"
+"""Id of the message for mechanisms whose errors at targets are not computed."""
 
 
 def find_target_errors(
@@ -27,29 +29,27 @@ def find_target_errors(
 ) -> list[tuple[str, str]]:
     """Return errors that the validation of single fields cannot find, as pairs (path, detail)."""
     if not targets:
-        return [("/targets", "missing: the analysis of manufacture needs targets")] if block is not None else []
+        return [("/targets", compose("analyses-manufacture-needs-targets"))] if block is not None else []
     linkage = extract_linkage(mechanism)
     if linkage is None:
-        return [("/targets", UNSUPPORTED_MESSAGE)]
+        return [("/targets", compose(UNSUPPORTED_MESSAGE))]
     sorts = [target.sort for target in targets]
     faults = [
-        (f"/targets/{k}", "differs in form from the first target; give all targets in the same form")
+        (f"/targets/{k}", compose("analyses-targets-of-different-forms"))
         for k, sort in enumerate(sorts)
         if sort != sorts[0]
     ]
     if sorts[0] == "poses" and mechanism.reference_input_angle is None:
-        detail = "missing: needed for the angles of the body; give it, or leave these angles out"
+        detail = compose("analyses-reference-input-missing")
         faults.append(("/mechanism/reference_input_angle", detail))
     if block is None:
         return faults
     turns = sorts[0] == "poses" or (sorts[0] == "outputs" and linkage.slide_angle is None)
     made = ManufactureTask(sorts[0] != "outputs" or not turns, turns, sorts[0] != "outputs", len(targets))
     if block.quality is not None and block.quality.yield_ is not None:
-        faults.append(
-            ("/manufacture/quality/yield", "only designs can have a required yield; the answer contains the yield")
-        )
+        faults.append(("/manufacture/quality/yield", compose("analyses-yield-not-required")))
     if block.tolerances is None:
-        faults.append(("/manufacture/tolerances", "missing: give the manufacturing accuracy of the linkage"))
+        faults.append(("/manufacture/tolerances", compose("analyses-tolerances-missing")))
     return faults + [(f"/manufacture{path}", detail) for path, detail in block.find_task_errors(made)]
 
 

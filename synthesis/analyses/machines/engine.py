@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from kinematics.engine.pistons import compute_piston_motion
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
 from synthesis.model.json_object import JsonObject
@@ -75,7 +76,7 @@ class EngineAnalysisRequest(DrivenRequest[GivenEngine]):
         """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.mechanism.rod <= self.mechanism.crank:
-            faults.append(("/mechanism/rod", "the rod must be longer than the crank's radius"))
+            faults.append(("/mechanism/rod", compose("analyses-rod-too-short")))
         return faults
 
     def build_answer(self) -> JsonObject:

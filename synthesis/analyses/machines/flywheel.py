@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.dimension import DENSITY, LENGTH
 from synthesis.model.dynamics.request import METRES_PER_UNIT, LengthUnit
@@ -67,7 +68,7 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
         """Return errors that the validation of single fields cannot find."""
         faults = super().find_errors()
         if self.mechanism.inner_radius >= self.mechanism.radius:
-            faults.append(("/mechanism/inner_radius", "must be below the outer radius"))
+            faults.append(("/mechanism/inner_radius", compose("analyses-inner-radius-too-large")))
         return faults
 
     def build_answer(self) -> JsonObject:

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.geneva import build_drive
 from synthesis.model.json_object import JsonObject
@@ -97,15 +98,22 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
                 given.cone_angle is not None
                 and not math.degrees(step) * (1.0 - ENTRY_TOLERANCE) <= given.cone_angle < 90.0
             ):
-                faults.append(("/mechanism/cone_angle", f"must be from {math.degrees(step):.9g} to below 90 degrees"))
+                faults.append(
+                    (
+                        "/mechanism/cone_angle",
+                        compose("analyses-cone-angle-out-of-range", least=f"{math.degrees(step):.9g}"),
+                    )
+                )
             if given.drag_link is not None:
-                faults.append(("/mechanism/drag_link", "a drag link drives plane Geneva drives only"))
+                faults.append(("/mechanism/drag_link", compose("analyses-drag-link-needs-plane-drive")))
         elif given.crank_radius is not None:
             if given.center_distance is None:
-                faults.append(("/mechanism/center_distance", "give it together with the crank's radius"))
+                faults.append(("/mechanism/center_distance", compose("analyses-center-distance-missing")))
             elif not math.sin(step) * (1.0 - ENTRY_TOLERANCE) <= given.crank_radius / given.center_distance < 1.0:
                 least = given.center_distance * math.sin(step)
-                faults.append(("/mechanism/crank_radius", f"must be from {least:.9g} to below the center distance"))
+                faults.append(
+                    ("/mechanism/crank_radius", compose("analyses-crank-radius-out-of-range", least=f"{least:.9g}"))
+                )
         if given.drag_link is not None and not faults:
             faults += _find_drag_link_errors(given.drag_link)
         return faults
@@ -136,7 +144,7 @@ def _find_drag_link_errors(link: GivenDragLink) -> list[tuple[str, str]]:
     return [
         (
             "/mechanism/drag_link",
-            "the ground must be the shortest link, and ground plus longest link shorter than the other two together",
+            compose("analyses-drag-link-cannot-turn"),
         )
     ]
 

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from kinematics.indexing.ratchet import Ratchet
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
 from synthesis.model.json_object import JsonObject
@@ -78,9 +79,9 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
         """Return errors that the validation of single fields cannot find."""
         faults, given = super().find_errors(), self.mechanism
         if given.tooth_height >= 0.9 * given.wheel_radius:
-            faults.append(("/mechanism/tooth_height", "must be below nine tenths of the wheel's radius"))
+            faults.append(("/mechanism/tooth_height", compose("analyses-tooth-too-high")))
         elif not self._build_ratchet().reach < given.pawl_length:
-            faults.append(("/mechanism/pawl_length", "must be above half the length of a tooth's face"))
+            faults.append(("/mechanism/pawl_length", compose("analyses-pawl-too-short")))
         return faults
 
     def build_answer(self) -> JsonObject:

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Complex
 from kinematics.dynamics.rotor import compute_bearing_moments
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
 from synthesis.model.dimension import UNBALANCE
@@ -83,7 +84,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         """Return errors that the validation of single fields cannot find."""
         bearings = self.mechanism.bearings
         alike = bearings is not None and bearings[0] == bearings[1]
-        same = [("/mechanism/bearings", "two bearings at the same position cannot carry a couple")] if alike else []
+        same = [("/mechanism/bearings", compose("analyses-bearings-coincide"))] if alike else []
         return [*super().find_errors(), *same]
 
     def build_answer(self) -> JsonObject:

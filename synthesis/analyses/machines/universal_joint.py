@@ -15,6 +15,7 @@ from kinematics.linkage.universal_joint import (
     compute_shaft_motion,
     find_shaft_extremes,
 )
+from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.input_motion import StatedMotion, Sweep
 from synthesis.model.answer import Answer
@@ -91,11 +92,9 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         """Return errors that the validation of single fields cannot find."""
         faults, limits = super().find_errors(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
-            faults.append(("/limits", "give the fluctuation, or a minimum or maximum ratio"))
+            faults.append(("/limits", compose("analyses-speed-limit-missing")))
         if self.mechanism.joints[0].offset != 0.0:
-            faults.append(
-                ("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")
-            )
+            faults.append(("/mechanism/joints/0/offset", compose("analyses-first-joint-offset")))
         return faults
 
     def build_answer(self) -> JsonObject:
