@@ -103,7 +103,7 @@ def compose(message_id: str, /, **values: str | int) -> str:
         Values for the text. Integers are counts: they select singular or plural and are written with grouped digits;
         any other number is passed as the text to be shown. A composed text is translated with the message it is in.
     """
-    return remember(Message(message_id, {name: _as_value(value) for name, value in values.items()}))
+    return remember(Message(message_id, {name: _as_value(message_id, value) for name, value in values.items()}))
 
 
 def join_messages(parts: Iterable[str], separator: str = " ") -> str:
@@ -232,8 +232,13 @@ def _load_bundle(package: str, language: str) -> FluentBundle:
     return bundle
 
 
-def _as_value(value: str | int) -> Value:
-    return _remembered.get(value, value) if isinstance(value, str) else int(value)
+def _as_value(message_id: str, value: str | int) -> Value:
+    if isinstance(value, int):
+        return int(value)
+    known = _remembered.get(value)
+    # The text of a message may be one of its own values. Without this check it would contain itself, once more with
+    # every call.
+    return value if known is None or known.id == message_id else known
 
 
 def _write_value(value: Value, language: str) -> str | int:

@@ -40,11 +40,15 @@ class Refusal(Exception):
         self.status = status
         self.type = f"/problems/{type_}"
         self.title_id = title_id
-        self.title = compose(title_id)
         self.detail = detail
         self.errors = errors
         self.headers = headers
         self.defect = defect
+
+    @property
+    def title(self) -> str:
+        """Name of the type of error, in the language of the request that is answered."""
+        return compose(self.title_id)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the fields and the messages of the texts: the default would call the constructor with the detail."""
