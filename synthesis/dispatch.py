@@ -6,8 +6,8 @@ import time
 
 from kinematics.kernel_marks import LINKAGES_PART, is_compiled
 from kinematics.linkage import warm
+from kinematics.message import compose
 from synthesis.model.answer import AnyResult
-from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import AnyKind, Progress, scale_progress
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
@@ -26,6 +26,7 @@ from synthesis.results.measured_ranking import (
 from synthesis.results.measurement import measure_designs
 from synthesis.results.pareto import pareto_front
 from synthesis.results.practicality import sort_usable_first
+from synthesis.results.remarks import append_remark
 from synthesis.results.rounding import round_designs
 
 __all__ = [
@@ -71,12 +72,12 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
     result: AnyResult = kind.solve(asked, scale_progress(told, 0.0, SEARCH_SHARE))
     # Designs that fail a check are listed only on request and do not count as a result.
     if not any(design.verification.passed for design in result.designs):
-        told(SEARCH_SHARE, "no design found; searching the nearest miss")
+        told(SEARCH_SHARE, compose("synthesis-searching-nearest-miss"))
         rest = scale_progress(told, SEARCH_SHARE, 1.0)
         result = _apply_relaxation(asked, result, find_nearest_miss(asked, kind, rest), kind)
     if isinstance(problem, LinkageProblem):
         result = _finish_linkages(problem, result, kind)
-    told(1.0, "verified")
+    told(1.0, compose("results-verified"))
     return result.model_copy(update={"messages": list_messages(result)})
 
 
@@ -94,7 +95,7 @@ def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) 
     if is_measured:
         result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
     else:
-        result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
+        result = result.model_copy(update={"designs": designs, "summary": append_remark(result.summary, remark)})
     result = report_unknown_forces(problem, measure_designs(problem, result))
     return result.model_copy(update={"front": pareto_front(result.designs)})
 
@@ -117,18 +118,16 @@ def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation
     if not found.sound:
         miss = found.nearest_miss
         reached = "" if miss is None or kind.easing is None else kind.easing.describe_reached(miss.reachable)
-        return result.model_copy(update={"nearest_miss": miss, "summary": result.summary + reached})
+        return result.model_copy(update={"nearest_miss": miss, "summary": append_remark(result.summary, reached)})
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
     # These designs were found by another search, so the original one counts as incomplete.
     account = {"complete": False, "candidates": search.candidates + count, "accepted": count}
-    those = f"{format_count(count, 'design')}, found by ignoring the constraints,"
-    summary = f"{those} {choose_word(count, 'satisfies', 'satisfy')} them anyway."
     return result.model_copy(
         update={
             "designs": [*designs, *result.designs][: problem.max_designs],
             "search": search.model_copy(update=account),
-            "summary": summary,
+            "summary": compose("synthesis-designs-without-constraints", count=count),
         }
     )
 

@@ -22,6 +22,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from kinematics.message import compose
 from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.json_object import JsonObject
@@ -165,7 +166,7 @@ def find_nearest_miss(
         if sound:
             return Relaxation(sound, None)
     misses = misses or _list_failed(problem, search, scale_progress(progress, 0.8, 1.0))
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     if not misses:
         return Relaxation([], None)
     nearest = _sort_misses(misses)[0]

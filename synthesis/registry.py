@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Union
 
-from pydantic import ConfigDict, Discriminator, Tag, TypeAdapter
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Tag, TypeAdapter
+from pydantic_core import PydanticCustomError
 
+from kinematics.message import compose
 from synthesis.kinds import (
     balancing,
     cam,
@@ -69,6 +71,16 @@ def _tag_kind(statement: object) -> str | None:
     return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
 
 
+def _require_kind(statement: object) -> object:
+    """Refuse a statement without a known kind."""
+    # The union itself could only refuse it by a text that is written at import, in one language.
+    if _tag_kind(statement) is None:
+        raise PydanticCustomError(
+            "unknown_kind", "{message}", {"message": compose("synthesis-unknown-kind", kinds=", ".join(KINDS))}
+        )
+    return statement
+
+
 if TYPE_CHECKING:
     Problem = ProblemBase
 else:
@@ -76,11 +88,8 @@ else:
     _members = tuple(Annotated[kind.problem, Tag(f"<{name}>")] for name, kind in KINDS.items())
     Problem = Annotated[
         Union[_members],  # noqa: UP007  (made of a list)
-        Discriminator(
-            _tag_kind,
-            custom_error_type="unknown_kind",
-            custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
-        ),
+        Discriminator(_tag_kind),
+        BeforeValidator(_require_kind),
     ]
     """Any problem; its field ``kind`` determines its model."""
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from kinematics.arrays import Real
 from kinematics.linkage.variation import Task, measure_deviations
 from kinematics.linkage.variation.variants import Sort
+from kinematics.message import compose
 from synthesis.model.manufacture.request import Exactness, Quality, RequiredTargets
 
 NAMES = {
@@ -182,7 +183,7 @@ def build_task(linkage: Linkage, held: RequiredTargets, units: tuple[float, floa
     if sort == "poses":
         angles = _convert_coupler_angles(linkage, task, held)
         if angles is None:
-            return "the linkage cannot be assembled in its reference configuration"
+            return compose("manufacture-not-assembled-at-reference")
         task = dataclasses.replace(task, angles=angles)
     return task
 
@@ -204,7 +205,7 @@ def find_target_inputs(
         task = dataclasses.replace(task, assemblies=_choose_assemblies(task, row))
     offsets = measure_deviations(task, row[None]).offsets[0]
     if not np.isfinite(offsets).all():
-        return "the linkage cannot be assembled at every target"
+        return compose("manufacture-not-assembled-at-targets")
     return dataclasses.replace(task, used=used), offsets
 
 

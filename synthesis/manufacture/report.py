@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from kinematics.arrays import Real
 from kinematics.linkage.variation import measure_deviations
 from kinematics.linkage.variation.sensitivities import Sensitivities, compute_sensitivities
+from kinematics.message import compose
 from synthesis.manufacture.linkage import ManufacturedLinkage, build_product, extract_linkage
 from synthesis.manufacture.play import compute_plays
 from synthesis.manufacture.widest_tolerances import find_widest_tolerances
@@ -51,7 +52,9 @@ def report_manufacture(
     linkage = extract_linkage(mechanism)
     if linkage is None:
         mechanism_type = mechanism.model_dump(include={"type"})["type"]
-        return ManufactureResult(ManufactureReport(remark=f"not built for {mechanism_type}"), None)
+        return ManufactureResult(
+            ManufactureReport(remark=compose("manufacture-type-not-supported", mechanism=mechanism_type)), None
+        )
     made = build_product(linkage, held, block, used)
     if isinstance(made, str):
         return ManufactureResult(ManufactureReport(remark=made), None)
@@ -61,12 +64,12 @@ def report_manufacture(
     listed = [
         _describe_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")
     ]
-    remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
+    remark = None if np.isfinite(rates.rates).all() else compose("manufacture-toggle-at-target")
     clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
     play = compute_plays(made, clearance) if clearance > 0.0 else []
     # None means that the clearances let the linkage reach a toggle, not that its play is zero.
     if play is None:
-        remark = "within the clearances of its pins the linkage reaches a toggle at a target"
+        remark = compose("manufacture-toggle-within-clearances")
     allocated: list[Allocation] = []
     if isinstance(block, Manufacture) and block.widest:
         allocated = find_widest_tolerances(

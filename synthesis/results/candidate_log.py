@@ -10,12 +10,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Generic, TypeVar
 
+from kinematics.message import JOINED, Message, compose, find_message, join_messages, remember
 from synthesis.model.answer import Search
-from synthesis.model.counting import format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.problem import ProblemBase
 from synthesis.model.protocols import VerifiedDesign
 from synthesis.results.measurement import check_shared_constraints
+from synthesis.results.remarks import write_name
 from synthesis.verification.shared_constraints import check_workspace_of_design
 
 DEFECT_REASONS = {
@@ -170,13 +171,26 @@ class CandidateLog(Generic[Design]):
 
     def format_reasons(self, *left_out: str) -> str:
         """Format the reasons of rejection with their counts, except ``left_out``; empty if there are none."""
-        return ", ".join(
-            f"{name.replace('_', ' ')} {format_integer(n)}" for name, n in self.rejected.items() if name not in left_out
+        return join_messages(
+            [
+                compose("results-reason-with-count", reason=write_name(name), count=n)
+                for name, n in self.rejected.items()
+                if name not in left_out
+            ],
+            ", ",
         )
 
     def describe_reasons(self) -> str:
-        """Describe the reasons of rejection in a sentence for a summary."""
-        return f" Rejected: {self.format_reasons()}." if self.rejected else ""
+        """Describe the reasons of rejection in a sentence for a summary, with a leading space; empty if there are none.
+
+        :func:`synthesis.results.remarks.append_remark` appends it to the summary.
+        """
+        if not self.rejected:
+            return ""
+        sentence = find_message(compose("results-rejected", reasons=self.format_reasons()))
+        assert sentence is not None
+        # A text with the space is a message, too: the empty part before it is not left out here.
+        return remember(Message(JOINED, {"separator": " ", "parts": ("", sentence)}))
 
     def select_designs(
         self,
@@ -216,15 +230,15 @@ class CandidateLog(Generic[Design]):
 
 
 def report_candidates(
-    candidates: Sequence[Candidate], progress: Progress, span: tuple[float, float], message: str
+    candidates: Sequence[Candidate], progress: Progress, span: tuple[float, float], message_id: str
 ) -> Iterator[Candidate]:
     """Yield candidates one by one and report progress between the shares of ``span`` before each.
 
-    ``message`` may contain ``{done}``, ``{next}`` and ``{all}``: the number of candidates before this one, including
-    it, and in total.
+    The message gets the values ``done``, ``next`` and ``all``: the number of candidates before this one, including it,
+    and in total.
     """
     begin, end = span
     count = len(candidates)
     for n, candidate in enumerate(candidates):
-        progress(begin + (end - begin) * n / count, message.format(done=n, next=n + 1, all=count))
+        progress(begin + (end - begin) * n / count, compose(message_id, done=n, next=n + 1, all=count))
         yield candidate

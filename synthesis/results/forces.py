@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose, join_messages
 from synthesis.model.answer import AnyResult, Check, Verification
 from synthesis.model.dimension import FORCE, POWER, TORQUE, Dimension
 from synthesis.model.dynamics.bodies import BodySpec, Shape
@@ -19,6 +20,7 @@ from synthesis.model.json_object import JsonObject
 from synthesis.model.linkage.answer import MotionMetrics
 from synthesis.model.linkage.problem import Constraints, LinkageProblem
 from synthesis.model.protocols import DrivenDesign, LinkageMeasures
+from synthesis.results.remarks import append_remark
 from synthesis.verification.checks import check_maximum
 from synthesis.verification.reconstruction import rebuild_mechanism
 
@@ -73,7 +75,8 @@ def report_unknown_forces(problem: LinkageProblem, result: AnyResult) -> AnyResu
     forces = None if miss is None else miss.design.forces
     if not problem.constraints.force_limits or forces is None or forces.remark is None:
         return result
-    return result.model_copy(update={"summary": f"{result.summary} Its forces are not known: {forces.remark}."})
+    remark = compose("results-forces-unknown", reason=forces.remark)
+    return result.model_copy(update={"summary": append_remark(result.summary, remark)})
 
 
 def add_forces(problem: LinkageProblem, design: Design) -> Design:
@@ -89,7 +92,7 @@ class ForcesUnknownError(ValueError):
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
         self.detail = detail
-        super().__init__(f"{path}: {detail}" if path else detail)
+        super().__init__(join_messages([path, detail], ": "))
 
 
 class DriveSetup(NamedTuple):
@@ -137,7 +140,7 @@ def prepare_drive(dynamics: DesignDynamics, design: DrivenDesign, steps: int = S
         raise ForcesUnknownError("/dynamics/links", dynamics.fill_from_layout(None) or "")
     mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
     if mechanism is None:
-        raise ForcesUnknownError("", "no mechanism can be built from these dimensions")
+        raise ForcesUnknownError("", compose("results-no-mechanism-from-dimensions"))
     block = apply_link_shape(dynamics, mechanism.links)
     for path, detail in find_weight_errors(block, mechanism):
         # Report the first error; others often follow from it.
@@ -145,11 +148,12 @@ def prepare_drive(dynamics: DesignDynamics, design: DrivenDesign, steps: int = S
     slides = mechanism.has_slide_input
     speed = dynamics.speed if slides else dynamics.speed_rpm
     if speed is None:
-        missing, moves = ("speed", "slides") if slides else ("speed_rpm", "turns")
-        raise ForcesUnknownError(f"/dynamics/{missing}", f"the input of this linkage {moves}; give its speed")
+        if slides:
+            raise ForcesUnknownError("/dynamics/speed", compose("results-sliding-speed-missing"))
+        raise ForcesUnknownError("/dynamics/speed_rpm", compose("results-rotating-speed-missing"))
     at = _list_inputs(block, mechanism, design.metrics, steps)
     if at is None:
-        raise ForcesUnknownError("", "the design has no verified motion")
+        raise ForcesUnknownError("", compose("results-no-verified-motion"))
     return DriveSetup(mechanism, block, at, speed if slides else speed * math.tau / 60.0)
 
 

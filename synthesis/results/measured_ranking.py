@@ -11,14 +11,15 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
+from kinematics.message import compose
 from synthesis.model.answer import AnyResult, Verification
-from synthesis.model.counting import format_count
 from synthesis.model.linkage.answer import LinkageMetrics
 from synthesis.model.linkage.problem import FORCE_NAMES, LinkageProblem
 from synthesis.model.problem import ProblemBase
 from synthesis.model.protocols import DrivenDesign
 from synthesis.results.forces import add_force_checks, get_peak
 from synthesis.results.ranking import sort_designs
+from synthesis.results.remarks import append_remark, write_name
 
 Problem = TypeVar("Problem", bound=ProblemBase)
 Design = TypeVar("Design", bound=DrivenDesign)
@@ -108,7 +109,7 @@ def rank_by_measure(problem: LinkageProblem, result: AnyResult) -> AnyResult:
     designs = sort_by_measure(problem, result.designs)[: problem.max_designs]
     # No remark without designs, because there is nothing to rank.
     told = _describe_order(problem.rank_by, result.designs, _select_measure(problem)) if result.designs else ""
-    return result.model_copy(update={"designs": designs, "summary": result.summary + told})
+    return result.model_copy(update={"designs": designs, "summary": append_remark(result.summary, told)})
 
 
 def sort_by_measure(problem: LinkageProblem, designs: Sequence[Design]) -> list[Design]:
@@ -144,18 +145,28 @@ _MEASURES: Mapping[str, Measure] = {"planes": _get_planes, "yield": _get_yield}
 def _describe_order(order: str, designs: Sequence[DrivenDesign], measure: Measure) -> str:
     """Describe the order and the range of its values in a sentence."""
     known = sorted({value for design in designs if (value := measure(design)) is not None})
-    what = order.replace("_", " ")
+    count = len(designs)
     if order == "planes":
-        missing, done = "none of them can be built", "arranged in planes"
-    else:
-        missing, done = f"none of them has a known {what}", "measured"
+        match known:
+            case []:
+                return compose("results-ranked-by-planes-none-buildable", count=count)
+            case [only]:
+                return compose("results-ranked-by-planes-equal", count=count, planes=round(only))
+            case _:
+                return compose(
+                    "results-ranked-by-planes", count=count, minimum=round(known[0]), maximum=round(known[-1])
+                )
+    name = write_name(order)
     match known:
         case []:
-            found = missing
+            return compose("results-ranked-by-unknown-measure", name=name, count=count)
         case [only]:
-            found = f"every buildable one needs {only:.0f}" if order == "planes" else f"{only:.4g}"
+            return compose("results-ranked-by-equal-measure", name=name, count=count, value=f"{only:.4g}")
         case _:
-            found = "they need" if order == "planes" else "from"
-            found += f" {known[0]:.4g} to {known[-1]:.4g}"
-    count = len(designs)
-    return f" Ranked by {what} ({format_count(count, 'design')} {done}): {found}."
+            return compose(
+                "results-ranked-by-measure",
+                name=name,
+                count=count,
+                minimum=f"{known[0]:.4g}",
+                maximum=f"{known[-1]:.4g}",
+            )

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Generic, NamedTuple, TypeVar
 
+from kinematics.message import compose
 from synthesis.model.linkage.answer import MotionMetrics
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import Statement
@@ -78,30 +79,27 @@ def sort_usable_first(problem: LinkageProblem, designs: Sequence[Design]) -> Ord
     least = min(map(measure_design_error, passed))
     # Exact designs differ by rounding only, so compare with at least the rounding level.
     near = [design for design in passed if measure_design_error(design) <= ERROR_BAND * max(least, RESIDUAL_ROUNDING)]
-    missing = (
-        "No design found" if len(near) == len(passed) else f"No design within {ERROR_BAND:g} times the smallest error"
-    )
-    practice = (
-        f"a transmission angle of {MIN_TRANSMISSION_ANGLE:.0f}° or more and a link ratio of {MAX_LINK_RATIO:.0f} or "
-        "less"
-    )
-    compact = f"no link longer than {MAX_REACH:.0f} times the task's size"
+    bounds = {
+        "angle": f"{MIN_TRANSMISSION_ANGLE:.0f}",
+        "ratio": f"{MAX_LINK_RATIO:.0f}",
+        "reach": f"{MAX_REACH:.0f}",
+        "band": f"{ERROR_BAND:g}",
+    }
     first = [design for design in near if is_usable(design)]
     if first:
-        return OrderedDesigns(
-            move_to_front(first, designs),
-            f" Designs with {practice} and {compact} are listed first.",
-        )
+        return OrderedDesigns(move_to_front(first, designs), compose("results-practical-first", **bounds))
+    # If all designs have small errors, the remark need not mention the errors.
+    all_near = len(near) == len(passed)
     # Without a fully practical design, accept a long link rather than a poor transmission angle.
-    told = f" {missing} has {practice} and {compact}"
     if has_even_links(passed[0]):
-        return OrderedDesigns(list(designs), f"{told}.")
+        message_id = "results-no-design-practical" if all_near else "results-no-near-design-practical"
+        return OrderedDesigns(list(designs), compose(message_id, **bounds))
     first = [design for design in near if has_even_links(design)]
     if not first:
-        return OrderedDesigns(list(designs), f" {missing} has {practice}.")
-    return OrderedDesigns(
-        move_to_front(first, designs), f"{told}; designs with such an angle and ratio are listed first."
-    )
+        message_id = "results-no-design-with-even-links" if all_near else "results-no-near-design-with-even-links"
+        return OrderedDesigns(list(designs), compose(message_id, **bounds))
+    message_id = "results-even-links-first" if all_near else "results-near-even-links-first"
+    return OrderedDesigns(move_to_front(first, designs), compose(message_id, **bounds))
 
 
 def _is_default(statement: Statement, name: str) -> bool:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.message import compose
 from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage.answer import ExactDesign, FourbarMechanism, SliderCrankMechanism
@@ -24,6 +25,7 @@ from synthesis.model.protocols import ManufacturableDesign
 from synthesis.results.manufacture import describe_exact_design, find_branch_range
 from synthesis.results.measurement import check_shared_constraints
 from synthesis.results.ranking import select_best
+from synthesis.results.remarks import append_remark
 from synthesis.verification.checks import check_maximum
 
 Nearly = Callable[[Any, Any, Any], Any]
@@ -88,15 +90,14 @@ def round_designs(problem: LinkageProblem, result: AnyResult, verify_with_tolera
         "accepted": search.accepted - len(missed),
         "rejected": dict(Counter(search.rejected) + lost),
     }
-    told = f" Rounded to the grid: {len(found)} of {len(found) + len(missed)} designs"
-    told += " still satisfy every constraint."
+    remark = compose("results-rounded", kept=len(found), count=len(found) + len(missed))
     if problem.include_failed:
         failed = [rounded.design for rounded in missed if rounded.design is not None] + failed
     return result.model_copy(
         update={
             "designs": [*found, *(failed if problem.include_failed else [])][: problem.max_designs],
             "search": search.model_copy(update=account),
-            "summary": result.summary + told,
+            "summary": append_remark(result.summary, remark),
             # A nearest miss is needed only if no design could be rounded.
             "nearest_miss": result.nearest_miss if found else _find_nearest_miss(missed),
         }

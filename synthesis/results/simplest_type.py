@@ -10,11 +10,13 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
+from kinematics.message import compose, join_messages
 from synthesis.model.answer import AnyResult, Search
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.protocols import DrivenDesign, VerifiedDesign
 from synthesis.results.candidate_log import OUTRANKED_REASON
+from synthesis.results.remarks import append_remark
 
 Design = TypeVar("Design", bound=VerifiedDesign)
 Answer = TypeVar("Answer", bound=AnyResult)
@@ -54,7 +56,7 @@ def prefer_simplest(
         return sixbars(progress)
     if sixbars is None:
         result = simple(progress)
-        return result.model_copy(update={"summary": f"{result.summary} {unlooked}".rstrip()})
+        return result.model_copy(update={"summary": append_remark(result.summary, unlooked)})
     # Search the simple types first: if one of their designs is good enough, skip the expensive search for sixbars.
     plain = simple(scale_progress(progress, 0.0, 0.4))
     if any(alone(design) for design in select_passing(plain.designs)):
@@ -91,7 +93,8 @@ def merge_alternatives(
 def describe_alternatives(problem: LinkageProblem, offered: int, of_second: int) -> str:
     """Return the end of a sentence that compares other types with the best simpler linkage.
 
-    It is a plain full stop if the designs to list are not yet known, because they will be sorted again.
+    It follows the last word without a space between them. It is a plain full stop if the designs to list are not yet
+    known, because they will be sorted again.
 
     Parameters
     ----------
@@ -103,8 +106,8 @@ def describe_alternatives(problem: LinkageProblem, offered: int, of_second: int)
     if problem.is_listed_later:
         return "."
     if not of_second:
-        return "; they are not listed because of max_designs."
-    return f" and are listed {'with it' if of_second < offered else 'in its place'}."
+        return compose("results-alternatives-not-listed")
+    return compose("results-alternatives-listed-too" if of_second < offered else "results-alternatives-listed-instead")
 
 
 def merge_results(
@@ -140,7 +143,7 @@ def merge_results(
         update={
             "designs": [*offered, *ordered(failed)][:most],
             "search": merge_searches(*searches),
-            "summary": " ".join([remark, simple.summary, found.summary]),
+            "summary": join_messages([remark, simple.summary, found.summary]),
         }
     )
 

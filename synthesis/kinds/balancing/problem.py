@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.kinds.balancing.statement.counterweights import Counterweights, ForceCaps, ForceWeights
 from synthesis.kinds.balancing.statement.rotor import RotorBase
 from synthesis.model.dynamics.request import DynamicsBlock
@@ -158,8 +159,9 @@ class BalancingProblem(RotorBase):
     def find_contradictions(self) -> list[Contradiction]:
         """Return fields that belong to the other object (rotor or linkage), and errors in the fields of this one."""
         strange = LINKAGE_FIELDS if self.object == "rotor" else ROTOR_FIELDS
+        fault = "balancing-field-not-for-rotor" if self.object == "rotor" else "balancing-field-not-for-linkage"
         found = [
-            Contradiction(f"/{name}", f"not applicable to a {self.object}; omit it")
+            Contradiction(f"/{name}", compose(fault))
             for name in strange
             if getattr(self, name) != type(self).model_fields[name].default
         ]
@@ -170,11 +172,11 @@ class BalancingProblem(RotorBase):
     def _find_linkage_errors(self) -> list[Contradiction]:
         missing = [name for name in ("mechanism", "dynamics") if getattr(self, name) is None]
         if missing:
-            return [Contradiction(f"/{name}", "required to balance a linkage") for name in missing]
+            return [Contradiction(f"/{name}", compose("balancing-linkage-field-required")) for name in missing]
         assert self.mechanism is not None
         assert self.dynamics is not None
         if self.motion.rate == 0.0:
-            return [Contradiction("/motion", "a linkage at rest does not shake; give a speed")]
+            return [Contradiction("/motion", compose("balancing-linkage-at-rest"))]
         # Imported here because it loads the analysis core, which parsing a problem should not wait for.
         from synthesis.kinds.balancing.statement.linkage_errors import find_linkage_errors
 
@@ -192,21 +194,21 @@ class BalancingProblem(RotorBase):
         """Return fields that belong to another goal, and missing requirements of a minimum."""
         minimized, weights = self.goal == "minimize", self.counterweights
         found = [
-            Contradiction(f"/counterweights/{name}", f"not applicable to the goal {self.goal}; omit it")
+            Contradiction(f"/counterweights/{name}", compose("balancing-field-not-for-goal", goal=self.goal))
             for name in (EXACT_FIELDS if minimized else MINIMIZED_FIELDS)
             if getattr(weights, name) is not None
         ]
         if not minimized:
             return found + [
-                Contradiction(f"/{name}", f"not applicable to the goal {self.goal}; omit it")
+                Contradiction(f"/{name}", compose("balancing-field-not-for-goal", goal=self.goal))
                 for name in ("objective", "caps")
                 if getattr(self, name) != type(self).model_fields[name].default
             ]
         if weights.total_mass is None and weights.max_mass is None:
-            detail = "unbounded: more mass always shakes less; limit the mass of each weight, or of all"
+            detail = compose("balancing-mass-unbounded")
             found.append(Contradiction("/counterweights/total_mass", detail))
         assert self.dynamics is not None
         if self.dynamics.friction is not None:
-            detail = "the best weights can only be computed without friction; omit it"
+            detail = compose("balancing-friction-not-supported")
             found.append(Contradiction("/dynamics/friction", detail))
         return found

@@ -141,7 +141,7 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
             progress(n / len(searches), f"driving outputs on coupler curves ({name})")
         begun = _find_starts(problem, search, rng)
         span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
-        candidates = report_candidates(begun, progress, span, "refining {next} of at most {all}")
+        candidates = report_candidates(begun, progress, span, "dwell-progress-refining-starts")
         # Every type gets its own share of designs, so that none is crowded out by the first.
         enough = len(sifting.passed) + SUFFICIENT_DESIGNS
         # Few starts of placed dwells become still enough: refine many, and drive only the best.

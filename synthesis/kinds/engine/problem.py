@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, INERTIA, LENGTH, MASS, ROTATIONAL_SPEED
 from synthesis.model.dynamics.loads import FULL_TURN, Interpolation, PairRows, find_period_error
 from synthesis.model.dynamics.request import METRES_PER_UNIT, FlywheelSpec
@@ -263,15 +264,13 @@ class EngineProblem(ProblemBase):
         """Return lengths, counts and tables that do not agree."""
         found = []
         if (self.rod is None) == (self.rod_ratio is None):
-            found.append(Contradiction("/rod", "give exactly one of rod and rod_ratio"))
+            found.append(Contradiction("/rod", compose("engine-rod-choice")))
         elif self.rod_length < MIN_ROD_RATIO * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
-            found.append(Contradiction(path, "the rod must be longer than the crank's radius"))
+            found.append(Contradiction(path, compose("engine-rod-too-short")))
         elif self.rod_length > MAX_ROD_RATIO * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
-            found.append(
-                Contradiction(path, f"the rod is more than {MAX_ROD_RATIO:g} times as long as the crank's radius")
-            )
+            found.append(Contradiction(path, compose("engine-rod-too-long", ratio=f"{MAX_ROD_RATIO:g}")))
         for path, layout in self.layouts:
             found += self._find_layout_errors(path, layout)
         return found + self._find_force_errors() + self._find_firing_errors()
@@ -279,51 +278,53 @@ class EngineProblem(ProblemBase):
     def _find_layout_errors(self, path: str, layout: EngineLayout) -> list[Contradiction]:
         found = []
         if (layout.type in ("vee", "w")) != (layout.vee_angle is not None):
-            detail = "a vee or w needs the angle between its banks; other layouts have none"
+            detail = compose("engine-vee-angle-choice")
             found.append(Contradiction(f"{path}/vee_angle", detail))
         if layout.type in ("inline", "radial") and layout.pins == "own":
-            found.append(Contradiction(f"{path}/pins", "only layouts with several banks can have pins of their own"))
+            found.append(Contradiction(f"{path}/pins", compose("engine-pins-of-one-bank")))
         count = layout.count_throws(self.cylinders)
         if count is None:
-            detail = f"{self.cylinders} cylinders do not fill {BANK_COUNTS[layout.type]} banks; use pins `own`"
+            detail = compose("engine-banks-not-filled", cylinders=self.cylinders, banks=BANK_COUNTS[layout.type])
             found.append(Contradiction("/cylinders", detail))
         elif layout.throws is not None and len(layout.throws) != count:
-            found.append(Contradiction(f"{path}/throws", f"expected {count}, one for each throw"))
+            found.append(Contradiction(f"{path}/throws", compose("engine-throw-list-length", count=count)))
         if count is not None and layout.positions is not None and len(layout.positions) != count:
-            found.append(Contradiction(f"{path}/positions", f"expected {count}, one for each throw"))
+            found.append(Contradiction(f"{path}/positions", compose("engine-throw-list-length", count=count)))
         # Other layouts are compared with their best throws, so that they may not give any.
         if path != "/layout" and layout.throws is not None:
-            found.append(Contradiction(f"{path}/throws", "throws of further layouts are found; omit them"))
+            found.append(Contradiction(f"{path}/throws", compose("engine-throws-of-further-layouts")))
         return found
 
     def _find_force_errors(self) -> list[Contradiction]:
         found = []
         if self.speed_rpm is None and (self.masses is not None or self.pressure is not None):
-            found.append(Contradiction("/speed_rpm", "forces of masses and gas need a speed"))
+            found.append(Contradiction("/speed_rpm", compose("engine-speed-missing")))
         if self.pressure is not None:
             # A pressure without a bore gives no force.
             if self.bore is None:
-                found.append(Contradiction("/bore", "gas pressure acts on the bore; give `bore`"))
+                found.append(Contradiction("/bore", compose("engine-bore-missing")))
             fault = find_period_error(self.pressure.table, self.cycle)
             if fault is not None:
                 found.append(Contradiction("/pressure/table", fault))
         if self.masses is not None and self.masses.rod.cg > self.rod_length:
-            found.append(Contradiction("/masses/rod/cg", "lies beyond the wrist pin"))
+            found.append(Contradiction("/masses/rod/cg", compose("engine-rod-center-beyond-pin")))
         # Without masses or gas there is no torque to even out.
         if self.flywheel is not None and self.masses is None and self.pressure is None:
-            found.append(Contradiction("/flywheel", "a flywheel evens the torque; give masses or pressure"))
+            found.append(Contradiction("/flywheel", compose("engine-flywheel-without-torque")))
         return found
 
     def _find_firing_errors(self) -> list[Contradiction]:
         found, order, given = [], self.firing_order, self.layout.throws is not None
         if order is not None and sorted(order) != list(range(1, self.cylinders + 1)):
-            found.append(Contradiction("/firing_order", f"expected each of the cylinders 1 to {self.cylinders} once"))
+            found.append(
+                Contradiction("/firing_order", compose("engine-firing-order-incomplete", count=self.cylinders))
+            )
         if self.firing_angles is not None and (order is None or len(order) != len(self.firing_angles)):
-            found.append(Contradiction("/firing_angles", "expected an angle for each cylinder of firing_order"))
+            found.append(Contradiction("/firing_angles", compose("engine-firing-angle-count")))
         # Given throws leave nothing to search.
         if given and (self.other_layouts or self.throw_angles is not None):
             path = "/other_layouts" if self.other_layouts else "/throw_angles"
-            found.append(Contradiction(path, "the throws are given, so nothing is to be found; omit this"))
+            found.append(Contradiction(path, compose("engine-nothing-to-find")))
         if self.throw_angles is not None and not given:
             # A four-stroke cylinder may fire in either of two turns.
             choices = 1 if self.stroke_cycle == 2 else 1 << (self.cylinders - 1)
@@ -332,6 +333,8 @@ class EngineProblem(ProblemBase):
                 # The first throw is fixed, as only differences matter.
                 combinations = len(self.throw_angles) ** (count - 1)
                 if combinations > MAX_COMBINATIONS or combinations * choices > MAX_CHOICES:
-                    detail = f"{combinations} combinations of {count} throws for {path} are too many to compare"
+                    detail = compose(
+                        "engine-too-many-combinations", combinations=combinations, count=count, layout=path
+                    )
                     found.append(Contradiction("/throw_angles", detail))
         return found

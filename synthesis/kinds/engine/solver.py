@@ -9,21 +9,28 @@ import numpy as np
 
 from kinematics.engine.firing import list_firing_choices
 from kinematics.engine.harmonics import compute_turning_parts, sum_torque
+from kinematics.message import compose
 from synthesis.kinds.engine.arrangement import Cylinders, arrange_cylinders, compute_middle
 from synthesis.kinds.engine.design import EngineCylinder, EngineDesign, EngineMechanism, EngineResult
 from synthesis.kinds.engine.enumeration import list_even_arrangements, list_requested_arrangements
 from synthesis.kinds.engine.measures import measure_engine
 from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 from synthesis.kinds.engine.verification import verify_engine
-from synthesis.model.counting import format_integer
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.remarks import append_remark, list_with_and, write_name
 
 SCORE_DIGITS = 9
 """Decimals to which the ranking criteria of engines are compared."""
 
 ANALYSED_FACTOR = 3
 """Number of analysed arrangements per requested design if a firing order is required, which many do not allow."""
+
+EVEN_TOLERANCE = 1e-6
+"""Maximum difference of the firing intervals, degrees, of an engine that fires evenly."""
+
+BALANCE_TOLERANCE = 1e-9
+"""Shaking force in units of m_B r ω², or moment per spacing of the throws, that counts as balanced: rounding."""
 
 
 class _Candidate(NamedTuple):
@@ -45,19 +52,19 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
     sifting = CandidateLog[EngineDesign](problem)
     given = problem.layout.throws
     if given is not None:
-        progress(0.1, "analysing")
+        progress(0.1, compose("engine-analysing"))
         sifting.verify_candidates([_Candidate((), 0, tuple(given))], partial(_build_design, problem))
-        progress(1.0, "verified")
+        progress(1.0, compose("results-verified"))
         return EngineResult(
             designs=sifting.select_designs(list),
             search=sifting.build_search("analysis", complete=not sifting.rejected),
-            summary=_describe_best(sifting) + sifting.describe_reasons(),
+            summary=append_remark(_describe_best(sifting), sifting.describe_reasons()),
             count=1,
         )
     candidates: list[_Candidate] = []
     counted, complete = 0, True
     for place, (_, layout) in enumerate(problem.layouts):
-        progress(0.6 * place / len(problem.layouts), f"arranging the throws of layout {place + 1}")
+        progress(0.6 * place / len(problem.layouts), compose("engine-arranging-throws", number=place + 1))
         angles = problem.throw_angles
         found = (
             list_even_arrangements(problem, layout)
@@ -67,13 +74,13 @@ def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
         counted, complete = counted + found.total, complete and found.complete
         candidates += _score_arrangements(problem, layout, place, found.phases)
     candidates.sort()
-    progress(0.6, "analysing the best")
+    progress(0.6, compose("engine-analysing-best"))
     # A required firing order rejects many: analyse more arrangements.
     wanted = problem.max_designs * (ANALYSED_FACTOR if problem.firing_order is not None else 1)
     sifting.verify_candidates(candidates[:wanted], partial(_build_design, problem), enough=problem.max_designs)
     verified = sifting.candidates
     sifting.reject("outranked", len(candidates) - verified)
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     return EngineResult(
         designs=sifting.select_designs(list),
         search=sifting.build_search("exhaustive", complete=complete and not sifting.failed),
@@ -140,23 +147,28 @@ def _list_cylinders(cylinders: Cylinders) -> list[EngineCylinder]:
 def _describe_best(sifting: CandidateLog[EngineDesign]) -> str:
     """Describe the first design."""
     if not sifting.passed:
-        return "No engine passed its checks."
+        return compose("engine-none-passed")
     best = sifting.passed[0]
     order, metrics = "-".join(map(str, best.firing.orders[0].order)), best.metrics
-    evenly = "evenly" if metrics.unevenness <= 1e-6 else f"unevenly (intervals differ by {metrics.unevenness:.4g}°)"
+    if metrics.unevenness <= EVEN_TOLERANCE:
+        fired = compose("engine-fires-evenly", layout=best.mechanism.layout, order=order)
+    else:
+        difference = f"{metrics.unevenness:.4g}"
+        fired = compose("engine-fires-unevenly", layout=best.mechanism.layout, order=order, difference=difference)
     shaken = [
-        name.replace("_", " ")
+        write_name(name)
         for name in ("primary_force", "primary_moment", "secondary_force", "secondary_moment")
-        if getattr(metrics, name) > 1e-9
+        if getattr(metrics, name) > BALANCE_TOLERANCE
     ]
-    left = " and ".join(shaken) or "nothing up to the second order"
-    fired = f"The {best.mechanism.layout} engine fires {evenly} in the order {order}"
-    return f"{fired}. Unbalanced after crankshaft counterweights: {left}."
+    left = compose("engine-unbalanced", parts=list_with_and(shaken)) if shaken else compose("engine-balanced")
+    return append_remark(fired, left)
 
 
 def _write_summary(problem: EngineProblem, sifting: CandidateLog[EngineDesign], count: int, listed: int) -> str:
     if not count:
-        return "No arrangement of these throws fires evenly; give throw_angles to compare uneven ones."
-    evenly = "" if problem.throw_angles is not None else " with even firing"
-    part = "" if listed == count else f", of which {format_integer(listed)} symmetric ones were compared"
-    return f"Arrangements of the throws{evenly}: {format_integer(count)}{part}. {_describe_best(sifting)}"
+        return compose("engine-none-fires-evenly")
+    if problem.throw_angles is not None:
+        counted = "engine-arrangements" if listed == count else "engine-arrangements-compared"
+    else:
+        counted = "engine-even-arrangements" if listed == count else "engine-even-arrangements-compared"
+    return append_remark(compose(counted, count=count, compared=listed), _describe_best(sifting))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.analyses.input_motion import MAX_POSITIONS, RAD_PER_S
 from synthesis.analyses.linkages.cyclic_statistics import is_closed
 from synthesis.analyses.linkages.dynamics import DETERMINED_STATUSES, analyze_forces
@@ -80,7 +81,7 @@ def compute_machine_torque(problem: FlywheelProblem, route: str, share: float) -
     turns = find_period_turns(request.dynamics, mechanism)
     # At least 36 positions per turn must fit into the maximum number.
     if not 0 < turns < MAX_POSITIONS // 36:
-        raise UnknownTorque("the linkage and its loads do not repeat within a few turns")
+        raise UnknownTorque(compose("flywheel-motion-not-repeating"))
     steps = turns * min(MAX_STEPS_PER_TURN, (MAX_POSITIONS - 1) // turns)
     at = FULL_TURN * turns * (np.arange(steps + 1) + share) / steps
     # Drive the linkage at constant speed, since the fluctuation is small.
@@ -88,8 +89,8 @@ def compute_machine_torque(problem: FlywheelProblem, route: str, share: float) -
     found = analyze_forces(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
     for status, angle in zip(found["status"], at, strict=True):
         if status not in DETERMINED_STATUSES:
-            raise UnknownTorque(f"the linkage's forces are not known over the whole cycle: {status} at {angle:.4g}°")
+            raise UnknownTorque(compose("flywheel-forces-unknown", status=status, angle=f"{angle:.4g}"))
     demand = np.array(found[route], np.float64)
     if not is_closed(mechanism, at, demand, turns):
-        raise UnknownTorque("the linkage's torque does not repeat after a cycle")
+        raise UnknownTorque(compose("flywheel-torque-not-repeating"))
     return TorqueCycle(np.radians(at), np.append(demand[:-1], demand[0]), smooth=True)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, JsonValue
 
+from kinematics.message import compose
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, SPEED
 from synthesis.model.dynamics.loads import FULL_TURN, Interpolation, PairRows, Turns, find_period_error
 from synthesis.model.dynamics.request import METRES_PER_UNIT, FlywheelSpec, LoadedLinkage
@@ -169,7 +170,7 @@ class FlywheelProblem(ProblemBase, FlywheelSpec):
         """Return a torque with two sources or none, tables that do not repeat, and wheels without bounds."""
         found = []
         if (self.torque is None) == (self.machine is None):
-            found.append(Contradiction("/torque", "give exactly one of torque and machine"))
+            found.append(Contradiction("/torque", compose("flywheel-torque-source-choice")))
         if self.torque is not None:
             fault = find_period_error(self.torque.table, FULL_TURN * self.torque.turns)
             if fault is not None:
@@ -184,18 +185,13 @@ class FlywheelProblem(ProblemBase, FlywheelSpec):
         # With a minimum thickness alone, a rim can still grow without bound as its wall gets thinner.
         bounding = least and ("rim" not in self.forms or limits.wall is not None)
         if not (bounding or limits.radius or limits.rim_speed or limits.radius_to_thickness):
-            detail = "unbounded: the mass falls as the radius grows; limit radius, rim_speed or radius_to_thickness"
-            found.append(
-                Contradiction(
-                    "/limits", f"{detail}, or the minimum thickness (for a rim together with the minimum wall)"
-                )
-            )
+            found.append(Contradiction("/limits", compose("flywheel-mass-unbounded")))
         most = limits.thickness is not None and limits.thickness.max is not None
         if "rim" in self.forms and not (most or limits.wall):
-            detail = "unbounded: a rim gets lighter with a thinner wall; limit the maximum thickness or the wall"
+            detail = compose("flywheel-wall-unbounded")
             found.append(Contradiction("/limits", detail))
         if self.form == "disc" and limits.wall is not None:
-            found.append(Contradiction("/limits/wall", "a disc has no wall; choose a rim, or omit the limit"))
+            found.append(Contradiction("/limits/wall", compose("flywheel-disc-has-no-wall")))
         return found
 
     def _find_machine_errors(self, machine: Machine) -> list[Contradiction]:
@@ -204,7 +200,7 @@ class FlywheelProblem(ProblemBase, FlywheelSpec):
         from synthesis.analyses.linkages.loaded_mechanism import find_loaded_errors
 
         if machine.dynamics.units != self.units:
-            detail = f"the wheel is given in units {self.units}; give the machine in the same units"
+            detail = compose("flywheel-units-differ", units=self.units)
             return [Contradiction("/machine/dynamics/units", detail)]
         faults = find_loaded_errors(machine.mechanism, machine.dynamics, self.length_unit, shaft=True)
         return [Contradiction(f"/machine{path}", detail) for path, detail in faults]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+from kinematics.message import compose, join_messages
 from synthesis.analyses.input_motion import RAD_PER_S
 from synthesis.kinds.flywheel.course import TorqueCycle, UnknownTorque, compute_torque_cycle
 from synthesis.kinds.flywheel.design import Fluctuation, FlywheelDesign, FlywheelMechanism, FlywheelResult
@@ -15,6 +16,7 @@ from synthesis.mechanisms import flywheel
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
 from synthesis.results.ranking import select_best, sort_designs
+from synthesis.results.remarks import append_remark, write_name, write_quantity
 
 
 def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
@@ -27,30 +29,30 @@ def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResu
         flywheel is needed or the limits permit none; ``summary`` gives the reason.
     """
     sifting = CandidateLog[FlywheelDesign](problem)
-    progress(0.0, "torque over a cycle")
+    progress(0.0, compose("flywheel-computing-torque"))
     try:
         course = compute_torque_cycle(problem)
     except UnknownTorque as error:
-        text = f"No flywheel found: {error}."
+        text = compose("flywheel-torque-unknown", reason=str(error))
         return FlywheelResult(designs=[], search=sifting.build_search("exact"), summary=text, fluctuation=None)
     found = flywheel.compute_table_fluctuation(course.angle, course.demand, smooth=course.smooth)
-    progress(0.3, "sizing")
+    progress(0.3, compose("flywheel-sizing"))
     fluctuation = _compute_fluctuation(problem, course, found)
     remarks = []
     wheels = []
     for form in problem.forms if fluctuation.inertia > 0.0 else ():
         wheel = _size_wheel(problem, found, fluctuation.inertia, form)
         if wheel is None:
-            remarks.append(f"No {form} of the required inertia fits within the limits.")
+            remarks.append(compose("flywheel-form-does-not-fit", form=form))
         else:
             wheels.append(wheel)
-    progress(0.5, "integrating the speed")
+    progress(0.5, compose("flywheel-integrating-speed"))
     sifting.verify_candidates(wheels, partial(verify_flywheel, problem))
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     return FlywheelResult(
         designs=sifting.select_designs(lambda designs: sort_designs(designs, _get_mass)),
         search=sifting.build_search("exact", complete=not sifting.rejected),
-        summary=" ".join([_write_summary(problem, fluctuation, sifting), *remarks]),
+        summary=join_messages([_write_summary(problem, fluctuation, sifting), *remarks]),
         fluctuation=fluctuation,
     )
 
@@ -110,17 +112,21 @@ def _get_mass(design: FlywheelDesign) -> float:
 
 
 def _write_summary(problem: FlywheelProblem, fluctuation: Fluctuation, sifting: CandidateLog[FlywheelDesign]) -> str:
-    joule, kilogram, inertia = (" J", " kg", " kg·m²") if problem.units == "si" else ("", "", "")
-    text = [f"The energy fluctuates by {fluctuation.energy:.6g}{joule} over a cycle."]
+    joule, kilogram, inertia = ("J", "kg", "kg·m²") if problem.units == "si" else ("", "", "")
+    text = [compose("flywheel-energy", energy=write_quantity(f"{fluctuation.energy:.6g}", joule))]
     if fluctuation.mean_torque < 0.0:
-        text.append("The mean torque is negative: on average the other side drives the shaft.")
+        text.append(compose("flywheel-mean-torque-negative"))
     if fluctuation.inertia == 0.0:
-        text.append("No flywheel is needed: the shaft keeps the coefficient without one.")
+        text.append(compose("flywheel-not-needed"))
     elif sifting.passed:
         best = select_best(sifting.passed, _get_mass)
-        limits = ", ".join(best.metrics.at_limits).replace("_", " ")
         text.append(
-            f"The lightest wheel is a {best.mechanism.form} with a mass of {best.metrics.mass:.6g}{kilogram} "
-            f"and an inertia of {best.metrics.inertia:.6g}{inertia}. Active limits: {limits}."
+            compose(
+                "flywheel-lightest-wheel",
+                form=best.mechanism.form,
+                mass=write_quantity(f"{best.metrics.mass:.6g}", kilogram),
+                inertia=write_quantity(f"{best.metrics.inertia:.6g}", inertia),
+                limits=join_messages(map(write_name, best.metrics.at_limits), ", "),
+            )
         )
-    return " ".join(text) + sifting.describe_reasons()
+    return append_remark(join_messages(text), sifting.describe_reasons())

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import (
     ACCELERATION,
     ANGLE,
@@ -348,14 +349,14 @@ class IndexingProblem(ProblemBase):
         if self.drive == "ratchet":
             return self._find_ratchet_errors()
         found = [
-            Contradiction(f"/{name}", f"required for {self.drive}")
+            Contradiction(f"/{name}", compose("indexing-field-required", drive=self.drive))
             for name in ("roller_diameter", "speed_rpm")
             if getattr(self, name) is None
         ]
         if self.stations > MAX_STATIONS:
-            found.append(Contradiction("/stations", f"a Geneva drive has at most {MAX_STATIONS} stations"))
+            found.append(Contradiction("/stations", compose("indexing-too-many-stations", count=MAX_STATIONS)))
         if self.pawls is not None:
-            found.append(Contradiction("/pawls", f"not applicable to {self.drive}; omit it"))
+            found.append(Contradiction("/pawls", compose("indexing-field-not-for-drive", drive=self.drive)))
         if found:
             return found
         # Beyond this line the roller and the speed are given.
@@ -363,13 +364,13 @@ class IndexingProblem(ProblemBase):
         # A spherical drive has a sphere radius instead of lengths in the plane.
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
         found += [
-            Contradiction(f"/{name}", f"not applicable to {self.drive}; omit it")
+            Contradiction(f"/{name}", compose("indexing-field-not-for-drive", drive=self.drive))
             for name in foreign
             if getattr(self, name) is not None
         ]
         # The default crank enters the slots without shock.
         if not self.constraints.shock_free and self.crank_radius is None:
-            detail = "only a crank larger than that of shock-free entry has a shock; give its radius, or omit this"
+            detail = compose("indexing-no-shock-possible")
             found.append(Contradiction("/constraints/shock_free", detail))
         if not self.spherical and self.crank_radius is not None:
             found += self._find_crank_errors(self.crank_radius)
@@ -377,27 +378,27 @@ class IndexingProblem(ProblemBase):
                 return found
         most = self.most_rollers
         if self.rollers is not None and self.rollers > most:
-            detail = f"with {self.stations} stations the wheel only rests with at most {most} rollers"
+            detail = compose("indexing-rollers-leave-no-rest", stations=self.stations, rollers=most)
             if self.drive != "geneva_external":
-                detail = f"with {self.drive} the locking part is opposite the roller; only one roller is possible"
+                detail = compose("indexing-single-roller-only", drive=self.drive)
             found.append(Contradiction("/rollers", detail))
         # Only in an external drive do the slots stay clear of the crank's axis.
         if self.drive != "geneva_external" and self.crank_shaft_diameter > 0.0:
-            detail = f"slots of {self.drive} pass the crank's axis, so its crank is overhung; omit this"
+            detail = compose("indexing-crank-overhung", drive=self.drive)
             found.append(Contradiction("/crank_shaft_diameter", detail))
         if self.drive == "geneva_internal" and self.wheel_shaft_diameter > 0.0:
-            detail = "a ring has no bore, since the crank turns inside it; omit this"
+            detail = compose("indexing-ring-has-no-bore")
             found.append(Contradiction("/wheel_shaft_diameter", detail))
         # Smaller clearances would be lost in the steps of the outlines.
         for name in ("slot_end", "relief"):
             stated = getattr(self.clearances, name)
             if stated is not None and stated < MIN_CLEARANCE * self.roller:
-                detail = f"must be at least {MIN_CLEARANCE:g} roller diameters, the resolution of the outlines"
+                detail = compose("indexing-clearance-too-small", ratio=f"{MIN_CLEARANCE:g}")
                 found.append(Contradiction(f"/clearances/{name}", detail))
         for name in ("slot", "locking", "slot_end", "relief"):
             stated = getattr(self.clearances, name)
             if stated is not None and stated > MAX_CLEARANCE * self.roller:
-                detail = f"must be at most {MAX_CLEARANCE:g} roller diameters"
+                detail = compose("indexing-clearance-too-large", ratio=f"{MAX_CLEARANCE:g}")
                 found.append(Contradiction(f"/clearances/{name}", detail))
         return found
 
@@ -429,11 +430,11 @@ class IndexingProblem(ProblemBase):
     def _find_driver_errors(self) -> list[Contradiction]:
         if self.driver == "crank":
             if self.constraints.min_transmission_angle is not None:
-                detail = "a crank has no transmission angle; choose a drag link, or omit this"
+                detail = compose("indexing-crank-without-transmission-angle")
                 return [Contradiction("/constraints/min_transmission_angle", detail)]
             return []
         if self.spherical:
-            return [Contradiction("/driver", "a drag link drives plane Geneva drives only")]
+            return [Contradiction("/driver", compose("indexing-drag-link-for-plane-drives"))]
         return []
 
     def _find_ratchet_errors(self) -> list[Contradiction]:
@@ -447,26 +448,26 @@ class IndexingProblem(ProblemBase):
             "speed_rpm": self.speed_rpm,
         }
         found = [
-            Contradiction(f"/{name}", "not applicable to a ratchet; omit it")
+            Contradiction(f"/{name}", compose("indexing-field-not-for-ratchet"))
             for name, value in foreign.items()
             if value is not None
         ]
         for name in ("crank_shaft_diameter", "load_inertia", "clearances"):
             if name in changed:
-                found.append(Contradiction(f"/{name}", "not applicable to a ratchet; omit it"))
+                found.append(Contradiction(f"/{name}", compose("indexing-field-not-for-ratchet")))
         if self.driver != "crank":
-            found.append(Contradiction("/driver", "a drag link drives plane Geneva drives only"))
+            found.append(Contradiction("/driver", compose("indexing-drag-link-for-plane-drives")))
         # The motion of a ratchet follows its drive, so limits on the motion do not apply.
         for name in ("dwell_share", "peak_acceleration", "drive_torque", "steady_share", "min_transmission_angle"):
             if getattr(self.constraints, name) is not None:
-                found.append(Contradiction(f"/constraints/{name}", "not applicable to a ratchet; omit it"))
+                found.append(Contradiction(f"/constraints/{name}", compose("indexing-field-not-for-ratchet")))
         if not self.constraints.shock_free:
-            found.append(Contradiction("/constraints/shock_free", "a ratchet has no entry; omit this"))
+            found.append(Contradiction("/constraints/shock_free", compose("indexing-ratchet-without-entry")))
         if self.wall_thickness is None:
-            found.append(Contradiction("/wall_thickness", "required: the thickness of a tooth at its foot"))
+            found.append(Contradiction("/wall_thickness", compose("indexing-tooth-thickness-missing")))
         # No pair of tooth and pawl numbers stops at all stations.
         if not self.teeth_choices:
-            detail = f"no number of teeth from {MIN_TEETH} on gives these stations with this number of pawls"
+            detail = compose("indexing-no-tooth-number", teeth=MIN_TEETH)
             found.append(Contradiction("/pawls/count", detail))
         return found
 
@@ -492,11 +493,11 @@ class IndexingProblem(ProblemBase):
 
     def _find_crank_errors(self, radius: float) -> list[Contradiction]:
         if self.center_distance is None:
-            return [Contradiction("/crank_radius", "give the center distance as well, or omit both")]
+            return [Contradiction("/crank_radius", compose("indexing-center-distance-missing"))]
         # The crank of shock-free entry is the smallest that reaches a slot.
         least = self.center_distance * math.sin(math.pi / self.stations)
         most = MAX_CRANK_RATIO * self.center_distance
         if not least * (1.0 - CRANK_TOLERANCE) <= radius <= most:
-            detail = f"must be between {least:.9g} (entry without shock) and {most:.9g}: a smaller crank reaches"
-            return [Contradiction("/crank_radius", f"{detail} no slot, a larger one the wheel's axis")]
+            detail = compose("indexing-crank-radius-out-of-range", minimum=f"{least:.9g}", maximum=f"{most:.9g}")
+            return [Contradiction("/crank_radius", detail)]
         return []

@@ -8,6 +8,7 @@ from functools import partial
 from typing import cast
 
 from kinematics.indexing.ratchet import Ratchet, find_min_face
+from kinematics.message import compose
 from synthesis.kinds.indexing.design import (
     IndexingDesign,
     IndexingResult,
@@ -25,6 +26,7 @@ from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import to_point
 from synthesis.results.candidate_log import NUMERICAL_REASONS, CandidateLog
+from synthesis.results.remarks import append_remark, write_name, write_quantity
 
 MIN_HEIGHT_FACTOR = 1.6
 """Factor on the tooth height of wheels with few teeth: below it the straight back would not fall towards its foot."""
@@ -56,9 +58,9 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
         complete unless a design is rejected for a reason that may depend on a height or length that is not given.
     """
     sifting = CandidateLog[IndexingDesign | RatchetDesign](problem)
-    progress(0.0, "sizing")
+    progress(0.0, compose("indexing-sizing"))
     sifting.verify_candidates(problem.teeth_choices, partial(_build_candidate, problem))
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     complete = _is_proven(problem, sifting)
     return IndexingResult(
         designs=sifting.select_designs(lambda found: found),
@@ -203,14 +205,21 @@ def _write_summary(
 ) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, RatchetDesign):
-        verdict = "None exists" if complete else "None found"
-        return f"{verdict}: {sifting.format_reasons()}."
+        verdict = "indexing-none-exists" if complete else "indexing-none-found"
+        return compose(verdict, reasons=sifting.format_reasons())
     mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
-    pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"
-    size = f"diameter {metrics.size:.6g} {unit}"
-    if metrics.sized_by is not None:
-        size += f", set by its {metrics.sized_by.replace('_', ' ').replace('web', 'teeth')}"
-    return (
-        f"A wheel of {mechanism.teeth} teeth with {pawls} stops every {metrics.step:.6g}°; {size}. Its faces lean over "
-        f"by {mechanism.face_angle:.4g}°." + sifting.describe_reasons()
+    diameter = write_quantity(f"{metrics.size:.6g}", unit)
+    if metrics.sized_by is None:
+        size = compose("indexing-wheel-diameter", diameter=diameter)
+    else:
+        limit = write_name(metrics.sized_by.replace("web", "teeth"))
+        size = compose("indexing-smallest-wheel-diameter", diameter=diameter, limit=limit)
+    wheel = compose(
+        "indexing-ratchet",
+        teeth=mechanism.teeth,
+        pawls=len(mechanism.pawls),
+        step=f"{metrics.step:.6g}",
+        size=size,
+        angle=f"{mechanism.face_angle:.4g}",
     )
+    return append_remark(wheel, sifting.describe_reasons())

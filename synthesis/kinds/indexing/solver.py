@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematics.indexing.drag_link import CrankCourse, compute_steady_share
 from kinematics.indexing.geneva import Geneva
+from kinematics.message import compose
 from synthesis.kinds.indexing import plane, sphere
 from synthesis.kinds.indexing.design import (
     GenevaMechanism,
@@ -30,6 +31,7 @@ from synthesis.kinds.indexing.verification.verify import verify_indexing
 from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import NUMERICAL_REASONS, CandidateLog
+from synthesis.results.remarks import append_remark, write_name, write_quantity
 
 PROGRAM_POINT_COUNT = 361
 """Number of positions of a program."""
@@ -81,9 +83,9 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
         return solve_ratchet(problem, progress)
     sifting = CandidateLog[IndexingDesign | RatchetDesign](problem)
     numbers = range(1, problem.most_rollers + 1) if problem.rollers is None else [problem.rollers]
-    progress(0.0, "sizing")
+    progress(0.0, compose("indexing-sizing"))
     sifting.verify_candidates(numbers, partial(_build_candidate, problem))
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     designs = sifting.select_designs(lambda found: found)
     # The best drag link is searched, not enumerated.
     complete = problem.driver == "crank" and not UNPROVEN_REASONS & sifting.rejected.keys()
@@ -214,14 +216,16 @@ def _write_summary(
 ) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, IndexingDesign):
-        verdict = "None exists" if complete else "None found"
-        return f"{verdict}: {sifting.format_reasons()}."
+        verdict = "indexing-none-exists" if complete else "indexing-none-found"
+        return compose(verdict, reasons=sifting.format_reasons())
     metrics, unit = best.metrics, problem.length_unit
-    size = f"its size is {metrics.size:.6g} {unit}"
-    if metrics.sized_by is not None:
-        size = f"the smallest size is {metrics.size:.6g} {unit}, set by its {metrics.sized_by.replace('_', ' ')}"
-    turned = "crank" if problem.driver == "crank" else "drag link's input"
-    return (
-        f"The wheel turns during {best.index_angle:.6g}° of the {turned} and rests for "
-        f"{100.0 * best.dwell_share:.4g} % of the time; {size}." + sifting.describe_reasons()
+    size = write_quantity(f"{metrics.size:.6g}", unit)
+    wheel = compose(
+        "indexing-crank-drive" if problem.driver == "crank" else "indexing-drag-link-drive",
+        angle=f"{best.index_angle:.6g}",
+        share=f"{100.0 * best.dwell_share:.4g}",
+        size=compose("indexing-drive-size", size=size)
+        if metrics.sized_by is None
+        else compose("indexing-smallest-drive-size", size=size, limit=write_name(metrics.sized_by)),
     )
+    return append_remark(wheel, sifting.describe_reasons())

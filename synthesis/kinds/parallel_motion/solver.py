@@ -58,7 +58,7 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
         fourbars = list(_list_from_linkage(problem.linkage, cognates_too=problem.include_cognates))
     sifting = CandidateLog[ParallelMotionDesign](problem, REJECTION_REASONS)
     sifting.verify_candidates(
-        report_candidates(fourbars, progress, (PATH_PROGRESS_SHARE, 1.0), "driving sixbars"),
+        report_candidates(fourbars, progress, (PATH_PROGRESS_SHARE, 1.0), "parallel_motion-progress-driving-sixbars"),
         lambda fourbar: verify_parallel_motion(
             problem, _build_sixbar(fourbar.joints), fourbar.base, fourbar.input_side
         ),

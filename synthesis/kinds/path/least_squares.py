@@ -66,7 +66,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     else:
         minima = find_minima(problem, task, np.random.default_rng(problem.seed), first)
     fits.verify_candidates(
-        report_candidates(minima, first, (0.9, 1.0), "driving linkage {next} of {all}"),
+        report_candidates(minima, first, (0.9, 1.0), "path-progress-driving-linkage"),
         verify_candidate,
         # Twice the requested number, because some of the nearest will be dropped for straying between the points.
         enough=max(2 * problem.max_designs, MIN_DRIVEN),
@@ -77,7 +77,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     if problem.start is None and not problem.prescribed and fits.is_astray():
         linkages = fit_by_shape(problem, second)
         fits.verify_candidates(
-            report_candidates(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), verify_linkage
+            report_candidates(linkages, second, (0.8, 1.0), "path-progress-driving-linkage"), verify_linkage
         )
     kept = drop_straying(fits.passed, problem)
     # For an open curve the points alone may be what the client means.

@@ -426,7 +426,7 @@ def _build_result(problem: PathProblem, mechanisms: list[Mechanism], progress: P
     in_rank = build_ordering(problem)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates(mechanisms, progress, (0.7, 1.0), "{done} of {all} linkages driven"),
+        report_candidates(mechanisms, progress, (0.7, 1.0), "path-progress-linkages-driven"),
         partial(verify_traced, problem),
     )
     if problem.is_fitted:

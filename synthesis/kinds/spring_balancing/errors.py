@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from synthesis.analyses.linkages.loaded_mechanism import find_driven_errors
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
 from synthesis.mechanisms.machine import locate_on_link
@@ -28,9 +29,9 @@ def find_spring_errors(
     pulled = dynamics.gravity is not None and dynamics.gravity.magnitude > 0.0
     moved = motion.rate != 0.0 or motion.acceleration != 0.0
     if not dynamics.loads and not dynamics.springs and not (weighs and (pulled or moved)):
-        detail = "there is nothing to balance: give gravity with masses of the links, or a load"
+        detail = compose("spring_balancing-nothing-to-balance")
         faults.append(("/dynamics/gravity" if weighs else "/dynamics/bodies", detail))
-    no_link = f"not a link; the links are {', '.join(mechanism.links)}"
+    no_link = compose("spring_balancing-not-a-link", links=", ".join(mechanism.links))
     places = [complex(z) for z in mechanism.joints.values()]
     size = max(abs(a - b) for a in places for b in places) or 1.0
     for n, spring in enumerate(springs):
@@ -42,7 +43,7 @@ def find_spring_errors(
         if missing:
             continue
         if named[0] == named[1]:
-            faults.append((paths[1], f"a spring acts between two links; both of its ends are on {named[0]}"))
+            faults.append((paths[1], compose("spring_balancing-ends-on-one-link", link=named[0])))
             continue
         for k, end in enumerate(ends or ()):
             if len(mechanism.links[end.link]) < 2 and end.link != GROUND:
@@ -53,6 +54,6 @@ def find_spring_errors(
                     > MAX_DISTANCE * size
                 ):
                     field = "point" if end.point is not None else "within"
-                    faults.append((f"/springs/{n}/ends/{k}/{field}", "too far from the linkage"))
+                    faults.append((f"/springs/{n}/ends/{k}/{field}", compose("spring_balancing-end-too-far")))
                     break
     return faults

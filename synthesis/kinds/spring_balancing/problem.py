@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.kinds.spring_balancing.requested_springs import SoughtSpring
 from synthesis.model.dynamics.request import DynamicsBlock
 from synthesis.model.json_object import JsonObject
@@ -155,7 +156,7 @@ class SpringBalancingProblem(ProblemBase):
     def find_contradictions(self) -> list[Contradiction]:
         """Return errors in the linkage and its loads, and in the places of the springs' ends."""
         if self.dynamics.friction is not None:
-            detail = "the best springs can only be computed without friction; omit it"
+            detail = compose("spring_balancing-friction-not-supported")
             return [Contradiction("/dynamics/friction", detail)]
         # Imported here because it loads the analysis core, which parsing a problem should not wait for.
         from synthesis.kinds.spring_balancing.errors import find_spring_errors

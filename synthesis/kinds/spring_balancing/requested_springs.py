@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import FORCE, LENGTH, STIFFNESS, TORQUE, TORSION_STIFFNESS
 from synthesis.model.dynamics.bodies import Name, Place
 from synthesis.model.problem import Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
@@ -38,7 +39,7 @@ class SoughtEnd(Statement):
     @model_validator(mode="after")
     def _validate_place(self) -> Self:
         if (self.point is None) == (self.within is None):
-            raise ValueError("give exactly one of point and within")
+            raise ValueError(compose("spring_balancing-end-place-choice"))
         return self
 
     @property
@@ -109,11 +110,11 @@ class SoughtSpring(Statement):
     @model_validator(mode="after")
     def _validate_form(self) -> Self:
         if (self.ends is None) == (self.links is None):
-            raise ValueError("give the ends of a spring, or the links of a torsion spring")
+            raise ValueError(compose("spring_balancing-ends-or-links"))
         changed = self.find_changed_fields()
         strange = [name for name in (TORSION_FIELDS if self.links is None else LENGTH_FIELDS) if name in changed]
         if strange:
-            raise ValueError(f"not applicable to this type of spring: {', '.join(strange)}")
+            raise ValueError(compose("spring_balancing-fields-of-other-type", fields=", ".join(strange)))
         for name, least, most in (
             ("rate", "min_rate", "max_rate"),
             ("free_length", "min_free_length", "max_free_length"),
@@ -122,26 +123,26 @@ class SoughtSpring(Statement):
         ):
             low, high = getattr(self, least, None), getattr(self, most)
             if getattr(self, name) is not None and (low is not None or high is not None):
-                raise ValueError(f"give either {name} or its limits")
+                raise ValueError(compose("spring_balancing-value-and-limits-given", field=name))
             if low is not None and high is not None and low > high:
-                raise ValueError(f"{least} must not be above {most}")
+                raise ValueError(compose("spring_balancing-minimum-above-maximum", minimum=least, maximum=most))
         if self.links is not None and self.free_angles[0] > self.free_angles[1]:
-            raise ValueError("the limits of the free angle exclude all; the default limit is ten turns")
+            raise ValueError(compose("spring_balancing-free-angles-excluded"))
         if self.max_preload is not None and self.max_preload < self.preload:
-            raise ValueError("max_preload must not be below preload")
+            raise ValueError(compose("spring_balancing-preload-limit-too-small"))
         if self.min_length is not None and self.max_length is not None and self.min_length >= self.max_length:
-            raise ValueError("min_length must be below max_length")
+            raise ValueError(compose("spring_balancing-lengths-excluded"))
         return self._check_form()
 
     def _check_form(self) -> Self:
         """Check the values that only springs of one form have."""
         if self.form == "compression" and (self.without_length or self.preload > 0.0 or self.max_preload):
-            raise ValueError("a compression spring needs a free length, and has no preload")
+            raise ValueError(compose("spring_balancing-compression-spring-form"))
         bounded = self.form == "extension" or self.max_deflection is not None or self.free_lengths[1] is not None
         if self.ends is not None and not bounded:
-            raise ValueError("unbounded: the free length could grow while the rate falls; give max_free_length")
+            raise ValueError(compose("spring_balancing-free-length-unbounded"))
         if self.diameter is not None and self.form != "compression":
-            raise ValueError("only a compression spring has a diameter, to check buckling")
+            raise ValueError(compose("spring_balancing-diameter-not-applicable"))
         return self
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from kinematics.message import compose
 from synthesis.kinds.spring_balancing.branching import branch_and_bound
 from synthesis.kinds.spring_balancing.design import SpringBalancingResult, SprungDesign
 from synthesis.kinds.spring_balancing.effects import Setting
@@ -13,6 +14,7 @@ from synthesis.kinds.spring_balancing.verification import verify_springs
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.results.candidate_log import CandidateLog
 from synthesis.results.ranking import select_best, sort_designs
+from synthesis.results.remarks import append_remark
 
 MIN_POSITIONS = 5
 """Minimum number of positions with known forces for a motion to count."""
@@ -29,13 +31,13 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
     SpringBalancingResult
         Complete if the springs are proven to be the best, or none exist.
     """
-    progress(0.0, "measuring the linkage")
+    progress(0.0, compose("spring_balancing-measuring-linkage"))
     setting = Setting(problem)
     sifting = CandidateLog[SprungDesign](problem)
     if len(setting.at) < MIN_POSITIONS:
-        return _build_result(sifting, "exact", "The mechanism cannot be held over this motion.", complete=False)
+        return _build_result(sifting, "exact", compose("spring_balancing-mechanism-not-held"), complete=False)
     if not setting.peak > ZERO_TOLERANCE * setting.parts:
-        text = "The drive is zero without springs; there is nothing to balance."
+        text = compose("spring_balancing-drive-zero-already")
         return _build_result(sifting, "exact", text, complete=True)
     report = scale_progress(progress, 0.1, 0.8)
     places = [setting.list_corners(spring) for spring in problem.springs]
@@ -43,15 +45,15 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
         method = "convex" if all(spring.convex for spring in problem.springs) else "branch_and_bound"
         best = branch_and_bound(setting, places, partial(_report_share, report))
         if best.status == "infeasible":
-            text = "None exists: no such springs keep their limits over this motion."
+            text = compose("spring_balancing-no-springs-within-limits")
             return _build_result(sifting, method, text, complete=True)
         found, bound, proved = [best.springs] if best.status == "solved" else [], best.bound, best.proved
     else:
         method, bound, proved = "search", None, False
         found = search_springs(setting, partial(_report_share, report))
-    progress(0.8, "verifying")
+    progress(0.8, compose("results-verifying"))
     sifting.verify_candidates(found, partial(verify_springs, setting, bound=bound, proved=proved))
-    progress(1.0, "verified")
+    progress(1.0, compose("results-verified"))
     exact = bool(sifting.passed) and sifting.passed[0].metrics.exact
     return _build_result(
         sifting, method, _write_summary(sifting, proved or exact), complete=(proved or exact) and bool(sifting.passed)
@@ -59,7 +61,7 @@ def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) 
 
 
 def _report_share(progress: Progress, share: float) -> None:
-    progress(share, "finding springs")
+    progress(share, compose("spring_balancing-finding-springs"))
 
 
 def _build_result(
@@ -78,13 +80,13 @@ def _get_value(design: SprungDesign) -> float:
 
 def _write_summary(sifting: CandidateLog[SprungDesign], proved: bool) -> str:
     if not sifting.passed:
-        return f"No design found.{sifting.describe_reasons()}"
+        return append_remark(compose("spring_balancing-none-found"), sifting.describe_reasons())
     metrics = select_best(sifting.passed, _get_value).metrics
     if metrics.exact:
-        energy = "" if metrics.energy_variation is None else " and the potential energy constant"
-        return f"The springs balance the linkage exactly: the drive is zero{energy} over the motion."
-    reduction = f"The springs reduce the drive to {metrics.value:.4g} of its unbalanced value"
+        constant = metrics.energy_variation is not None
+        return compose("spring_balancing-exact-with-constant-energy" if constant else "spring_balancing-exact")
+    value = f"{metrics.value:.4g}"
     if metrics.bound is None:
-        return f"{reduction}. This is the best found, not a proven minimum."
-    known = f"no such springs reduce it below {metrics.bound:.4g}"
-    return f"{reduction}; {known}." if proved else f"{reduction}; {known}. The values in between are undecided."
+        return compose("spring_balancing-best-found", value=value)
+    known = "spring_balancing-proven-minimum" if proved else "spring_balancing-bounded-minimum"
+    return compose(known, value=value, bound=f"{metrics.bound:.4g}")

@@ -21,6 +21,7 @@ from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import Reactions, compute_reactions
 from kinematics.dynamics.springs import Spring as MachineSpring
 from kinematics.dynamics.springs import TorsionSpring
+from kinematics.message import compose
 from synthesis.analyses.linkages.requested_motion import pace_machine, place_machine
 from synthesis.kinds.spring_balancing.design import FoundEnd, FoundSpring, SpringMetrics, SprungDesign, SprungLinkage
 from synthesis.kinds.spring_balancing.effects import GRID_SIZE, Setting
@@ -299,7 +300,7 @@ def _describe_gaps(before: DrivenMachine) -> list[str]:
     known, count = int(before.known.sum()), len(before.known)
     if known == count:
         return []
-    return [f"motion: the drive is known at {known} of {count} positions; the others are not assessed"]
+    return [compose("spring_balancing-positions-not-held", known=known, count=count)]
 
 
 def _list_warnings(problem: SpringBalancingProblem, springs: Sequence[FoundSpring]) -> list[str]:
@@ -309,6 +310,6 @@ def _list_warnings(problem: SpringBalancingProblem, springs: Sequence[FoundSprin
         if diameter is not None and (spring.free_length or 0.0) > MAX_SLENDERNESS * diameter:
             slender = (spring.free_length or 0.0) / diameter
             warnings.append(
-                f"springs/{spring.number}: {slender:.3g} times as long as wide; it buckles unless it is guided"
+                compose("spring_balancing-spring-buckles", number=spring.number, slenderness=f"{slender:.3g}")
             )
     return warnings

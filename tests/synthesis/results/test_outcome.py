@@ -144,10 +144,13 @@ def test_a_kind_states_its_own_key_and_group() -> None:
 def test_progress_runs_over_its_span() -> None:
     told: list[tuple[float, str]] = []
     drawn = report_candidates(
-        ["a", "b"], lambda share, message: told.append((share, message)), (0.5, 1.0), "{next} of {all}"
+        ["a", "b"],
+        lambda share, message: told.append((share, message)),
+        (0.5, 1.0),
+        "path-progress-driving-linkage",
     )
     assert list(drawn) == ["a", "b"]
-    assert told == [(0.5, "1 of 2"), (0.75, "2 of 2")]
+    assert told == [(0.5, "driving linkage 1 of 2"), (0.75, "driving linkage 2 of 2")]
 
 
 def test_nothing_that_is_left_out_as_alike_takes_a_place() -> None:

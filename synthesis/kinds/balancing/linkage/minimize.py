@@ -14,12 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.analyses.linkages.requested_motion import Task, place_machine
 from synthesis.kinds.balancing.linkage.conic_program import Answer, Level, Limits, find_best_weights
 from synthesis.kinds.balancing.linkage.effects import PARAMETER_COUNT, LinearQuantity, compute_quantities
 from synthesis.kinds.balancing.linkage.force_balance import Weight
 from synthesis.kinds.balancing.linkage.motion import find_pivot, list_moving_links
 from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.results.remarks import write_name
 
 GRID_SIZE = 2880
 """Number of positions of the motion at which peaks and means are evaluated."""
@@ -126,10 +128,17 @@ def build_setting(problem: BalancingProblem, task: Task) -> Setting:
             unbalanced = float(bare.evaluate_level(np.zeros(len(units))))
             largest = max(float(np.abs(part.by).max()) for part in scaled)
             if not unbalanced > ZERO_TOLERANCE * largest:
-                raise NothingToReduce(name.replace("_", " "))
+                raise NothingToReduce(write_quantity_name(name))
             values = [LinearQuantity(part.fixed / unbalanced, part.by / unbalanced) for part in scaled]
             levels.append(replace(bare, values=values))
     return Setting(links, levels, _build_limits(problem, task, links, levels, mass, size), units, grid[known])
+
+
+def write_quantity_name(name: str) -> str:
+    """Write the name of a quantity of the objective or the caps in words."""
+    if name.startswith("joint "):
+        return compose("balancing-joint-force", joint=name.removeprefix("joint "))
+    return write_name(name)
 
 
 def _list_counted(problem: BalancingProblem) -> list[tuple[str, float, float | None]]:

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from kinematics.dynamics.bodies import Body, join_bodies, make_body
 from kinematics.dynamics.machine import Machine
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism
+from kinematics.message import compose
 from synthesis.kinds.balancing.linkage.force_balance import Weight
 from synthesis.kinds.balancing.linkage.motion import list_moving_links
 from synthesis.kinds.balancing.statement.counterweights import Counterweights
@@ -63,7 +64,7 @@ def find_moment_balance(machine: Machine, requested: Counterweights) -> GearedBa
     known = machine.bodies.get(coupler, make_body(0.0))
     others = [j for j, mass in machine.pin_masses.items() if float(mass) > 0.0 and j not in (*pins.values(), *ground)]
     if others:
-        raise NoMomentBalance(f"there is a mass at {others[0]}; only the pins of the cranks may carry one")
+        raise NoMomentBalance(compose("balancing-mass-off-crank-pins", joint=others[0]))
     weights = _balance_coupler(coupler, known, a, b, requested, scale)
     whole = join_bodies([known, *(weight.body for weight in weights)])
     along = complex((complex(whole.cg) - a) / (b - a)) if float(whole.mass) > 0.0 else 0j
@@ -107,7 +108,7 @@ def _identify_fourbar(mechanism: Mechanism) -> tuple[str, str, str]:
     links, ground = list_moving_links(mechanism), set(mechanism.links[GROUND])
     cranks = [link for link in links if set(mechanism.links[link]) & ground]
     if len(links) != 3 or len(cranks) != 2 or mechanism.slides or mechanism.gears:
-        raise NoMomentBalance("geared inertias are known for pin-jointed fourbars only")
+        raise NoMomentBalance(compose("balancing-geared-inertias-for-fourbars"))
     first = mechanism.input
     return first, next(link for link in links if link not in cranks), next(link for link in cranks if link != first)
 
@@ -125,7 +126,7 @@ def _balance_coupler(
         return []
     along = complex((complex(known.cg) - a) / (b - a)) if mass > 0.0 else 0j
     if abs(along.imag) > INLINE_TOLERANCE:
-        raise NoMomentBalance("the coupler's centre of gravity is off the line of its pins")
+        raise NoMomentBalance(compose("balancing-coupler-center-off-pin-line"))
     square = abs(b - a) ** 2
     # m r b − I is positive if inertia is missing and negative if mass is missing.
     surplus = mass * along.real * (1.0 - along.real) * square - own
@@ -137,6 +138,6 @@ def _balance_coupler(
     quarter, own_of_one = 0.25 * square, requested.compute_inertia(1.0, scale)
     root = quarter**2 + 4.0 * own_of_one * surplus
     if root < 0.0:
-        raise NoMomentBalance("a disc in the middle of the coupler is too flat; make it thicker or denser")
+        raise NoMomentBalance(compose("balancing-coupler-disc-too-flat"))
     needed = -2.0 * surplus / (quarter + math.sqrt(root))
     return [Weight(coupler, needed, 0.5 * (a + b), requested.compute_inertia(needed, scale))]

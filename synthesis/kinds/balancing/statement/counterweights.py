@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import DENSITY, MASS
 from synthesis.model.dynamics.bodies import Name
 from synthesis.model.problem import NonNegative, PositiveLength, PositiveNumber, Statement
@@ -28,9 +29,7 @@ class ForceWeights(Statement):
     @model_validator(mode="after")
     def _validate_weights(self) -> Self:
         if not any([self.shaking_force, self.shaking_moment, self.drive, *self.joint_forces.values()]):
-            raise ValueError(
-                "the objective is empty: give shaking_force, shaking_moment, drive or joint_forces a weight"
-            )
+            raise ValueError(compose("balancing-objective-empty"))
         return self
 
 
@@ -91,13 +90,13 @@ class Counterweights(Statement):
     @model_validator(mode="after")
     def _validate_size(self) -> Self:
         if self.radius is not None and self.mass is not None:
-            raise ValueError("give the radius or the mass; the other follows")
+            raise ValueError(compose("balancing-radius-and-mass-given"))
         if (self.density is None) != (self.thickness is None):
-            raise ValueError("a disc has a density and a thickness; give both or neither")
+            raise ValueError(compose("balancing-disc-size-incomplete"))
         if self.max_disc_radius is not None and self.density is None:
-            raise ValueError("a disc needs a density and a thickness; give both")
+            raise ValueError(compose("balancing-disc-size-missing"))
         if self.links is not None and len(set(self.links)) < len(self.links):
-            raise ValueError("name each link once")
+            raise ValueError(compose("balancing-link-named-twice"))
         return self
 
     def compute_inertia(self, mass: float, scale: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from synthesis.analyses.linkages.loaded_mechanism import find_driven_errors
 from synthesis.kinds.balancing.statement.counterweights import Counterweights
 from synthesis.mechanisms.link_bodies import escape_pointer
@@ -32,16 +33,21 @@ def find_linkage_errors(
     machine, _ = build_machine(dynamics, mechanism, unit)
     masses = [*(float(part.mass) for part in machine.bodies.values()), *map(float, machine.pin_masses.values())]
     if not any(masses):
-        faults.append(("/dynamics/bodies", "without mass nothing shakes; give the masses of the links"))
+        faults.append(("/dynamics/bodies", compose("balancing-masses-missing")))
     moving = [link for link in mechanism.links if link != GROUND]
     for n, link in enumerate(weights.links or []):
         if link not in moving:
-            faults.append((f"/counterweights/links/{n}", f"not a moving link; these are {', '.join(moving)}"))
+            faults.append(
+                (f"/counterweights/links/{n}", compose("balancing-not-a-moving-link", links=", ".join(moving)))
+            )
     known = [joint for joint in mechanism.joints if sum(joint in listed for listed in mechanism.links.values()) > 1]
     for path, named in joints.items():
         for joint in named:
             if joint not in known:
                 faults.append(
-                    (f"{path}/{escape_pointer(joint)}", f"not a joint of two links; these are {', '.join(known)}")
+                    (
+                        f"{path}/{escape_pointer(joint)}",
+                        compose("balancing-not-a-joint-of-two-links", joints=", ".join(known)),
+                    )
                 )
     return faults

@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, FORCE, GRADE, MASS, ROTATIONAL_SPEED
 from synthesis.model.problem import (
     Contradiction,
@@ -139,7 +140,7 @@ class Holes(_PlaceChoice):
     @model_validator(mode="after")
     def _validate_steps(self) -> Self:
         if not 1 <= self.max_per_hole / self.step * (1.0 + 1e-12) < MAX_LEVELS + 1:
-            raise ValueError(f"max_per_hole must be 1 to {MAX_LEVELS} steps")
+            raise ValueError(compose("balancing-hole-step-count", count=MAX_LEVELS))
         return self
 
 
@@ -165,9 +166,9 @@ class Correction(Statement):
     @model_validator(mode="after")
     def _validate_choice(self) -> Self:
         if sum(stated is not None for stated in (self.radius, self.mass, self.holes, self.stock)) != 1:
-            raise ValueError("give exactly one of radius, mass, holes and stock")
+            raise ValueError(compose("balancing-correction-choice"))
         if self.stock is not None and self.removed:
-            raise ValueError("weights in stock are added")
+            raise ValueError(compose("balancing-stock-is-added"))
         return self
 
     @property
@@ -244,21 +245,21 @@ class RotorBase(ProblemBase):
         found = []
         stated = [bool(self.masses), bool(self.bearing_readings), self.influence is not None]
         if sum(stated) != 1:
-            detail = "give the unbalance exactly once: by masses, by bearing_readings, or by influence"
+            detail = compose("balancing-unbalance-source-choice")
             found.append(Contradiction("/masses", detail))
         if self.bearing_readings and self.rpm is None:
-            found.append(Contradiction("/rpm", "bearing forces determine an unbalance only at a known speed; give it"))
+            found.append(Contradiction("/rpm", compose("balancing-reading-speed-missing")))
         found += self._find_plane_errors()
         if self.influence is not None:
             found += self._find_influence_errors(self.influence)
         if self.max_grade is not None:
             found += [
-                Contradiction(f"/{name}", "the balance grade needs it: e ω = U/m ω")
+                Contradiction(f"/{name}", compose("balancing-grade-needs-field"))
                 for name in ("rpm", "rotor_mass")
                 if getattr(self, name) is None
             ]
             if self.supports is None and any(z != self.planes[0] for z in self.places):
-                detail = "unbalances off the single plane make a couple, which counts at the bearings; give them"
+                detail = compose("balancing-couple-needs-bearings")
                 found.append(Contradiction("/bearings", detail))
         return found
 
@@ -266,25 +267,29 @@ class RotorBase(ProblemBase):
         reach = max(abs(z - self.planes[0]) for z in [*self.places, *self.planes])
         apart = abs(self.planes[-1] - self.planes[0])
         if len(self.used_planes) == 2 and apart < MIN_SEPARATION * reach:
-            detail = "the two planes are too close; for a single plane give one place"
+            detail = compose("balancing-planes-too-close")
             return [Contradiction("/planes", detail)]
         supports = self.supports
         if supports is not None:
             reach = max(abs(z - supports[0]) for z in [*self.places, *self.planes, supports[1]])
             if abs(supports[1] - supports[0]) <= MIN_SEPARATION * reach:
                 path = "/bearings" if self.bearings is not None else "/bearing_readings/1/z"
-                return [Contradiction(path, "the two bearings are too close")]
+                return [Contradiction(path, compose("balancing-bearings-too-close"))]
         return []
 
     def _find_influence_errors(self, influence: Influence) -> list[Contradiction]:
         planes, sensors = len(self.used_planes), len(influence.initial)
         if len(influence.trials) != planes:
-            return [Contradiction("/influence/trials", f"expected {planes} runs with a trial weight, one per plane")]
+            return [Contradiction("/influence/trials", compose("balancing-trial-run-count", count=planes))]
         for n, run in enumerate(influence.trials):
             if len(run.readings) != sensors:
-                return [Contradiction(f"/influence/trials/{n}/readings", f"the initial run has {sensors} readings")]
+                return [
+                    Contradiction(
+                        f"/influence/trials/{n}/readings", compose("balancing-reading-count-differs", count=sensors)
+                    )
+                ]
         if sensors < planes:
-            return [Contradiction("/influence/initial", f"expected at least {planes} readings, one per plane")]
+            return [Contradiction("/influence/initial", compose("balancing-reading-count-too-small", count=planes))]
         initial = [reading.vector for reading in influence.initial]
         columns = [
             [(reading.vector - at) / run.moment for reading, at in zip(run.readings, initial, strict=True)]
@@ -298,6 +303,6 @@ class RotorBase(ProblemBase):
             product = sum(one.conjugate() * other for one, other in zip(*columns, strict=True))
             unlike *= math.sqrt(max(0.0, 1.0 - (abs(product) / (norms[0] * norms[1])) ** 2))
         if not unlike > INDEPENDENCE_TOLERANCE:
-            detail = "the trial weights change the readings equally or not at all; the planes cannot be distinguished"
+            detail = compose("balancing-planes-indistinguishable")
             return [Contradiction("/influence/trials", detail)]
         return []

@@ -96,7 +96,7 @@ def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pro
     sifting.reject(OUTRANKED_REASON, result.search.accepted)
     usable: list[LinkageDesign] = []
     tried = 0
-    for design in report_candidates(result.designs, progress, (0.9, 1.0), "adding driver dyads"):
+    for design in report_candidates(result.designs, progress, (0.9, 1.0), "motion-progress-adding-drivers"):
         if len(usable) == problem.max_designs:
             break
         tried += 1

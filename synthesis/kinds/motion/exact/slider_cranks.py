@@ -245,7 +245,7 @@ def solve_slider_pairs(
             _select_best(task, links, sliders, screened, max(3 * problem.max_designs, MIN_ATTEMPTS)),
             progress,
             (0.5, 1.0),
-            "driving the best pairs",
+            "motion-progress-driving-best-pairs",
         ),
         lambda pair: verify(problem, _build_mechanism(problem, task, links, sliders, kind, driving, *pair)),
         enough=problem.max_designs,

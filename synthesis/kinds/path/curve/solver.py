@@ -139,7 +139,7 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     linkages, sweep = _find_linkages(problem, target, setting, progress)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates(linkages, progress, (0.8, 1.0), "{done} of {all} linkages verified"),
+        report_candidates(linkages, progress, (0.8, 1.0), "path-progress-linkages-verified"),
         partial(_verify_linkage, problem, target, setting),
     )
     # Sound but inaccurate designs are counted as rejected instead of silently dropped.

@@ -179,7 +179,7 @@ def _build_result(problem: PathProblem, members: list[Member], brought: int, pro
     # Force limits are violated by many fits, as far as their residuals show; drive these only if there are no others.
     sound = [one for one in driven if one.broken == 0.0] if problem.constraints.force_limits else driven
     sifting.verify_candidates(
-        report_candidates(sound, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verify_member, enough
+        report_candidates(sound, progress, (0.6, 1.0), "path-progress-linkages-driven"), verify_member, enough
     )
     if len(sound) < len(driven) and len(sifting.passed) < problem.max_designs:
         sifting.verify_candidates((one for one in driven if one.broken > 0.0), verify_member, problem.max_designs)

@@ -35,7 +35,7 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
     solved = solve_five_points(points, to_complex((x2, y2)), to_complex((x4, y4)), np.random.default_rng(problem.seed))
     harvest = PathCandidateLog(problem)
     on_one_circuit = 0
-    for joints in report_candidates(solved.linkages, progress, (0.5, 1.0), "{done} of {all} real linkages verified"):
+    for joints in report_candidates(solved.linkages, progress, (0.5, 1.0), "path-progress-real-linkages-verified"):
         on_one_circuit += harvest.drive(joints)
     progress(1.0, "verified")
     # A solution that rounding kept from being driven might have been a design.

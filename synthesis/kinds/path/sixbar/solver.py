@@ -271,7 +271,7 @@ def _build_result(problem: PathProblem, mechanisms: list[SixbarMechanism], progr
     )
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "{done} of {all} sixbars driven"),
+        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "path-progress-sixbars-driven"),
         partial(verify_traced, problem),
     )
     if problem.is_fitted:

@@ -1,0 +1,3 @@
+### Progress
+
+dwell-progress-refining-starts = Verfeinerung { $next } von höchstens { $all }

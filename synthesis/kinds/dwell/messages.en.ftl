@@ -1,0 +1,3 @@
+### Progress
+
+dwell-progress-refining-starts = refining { $next } of at most { $all }

@@ -1,0 +1,3 @@
+### Progress
+
+function-progress-sixbars = Sechsgelenk { $next } von { $all } wird geprüft

@@ -1,0 +1,3 @@
+### Progress
+
+function-progress-sixbars = verifying { $next } of { $all } sixbars

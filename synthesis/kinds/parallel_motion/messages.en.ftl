@@ -1,0 +1,3 @@
+### Progress
+
+parallel_motion-progress-driving-sixbars = driving sixbars

@@ -1,0 +1,15 @@
+# Errors
+
+synthesis-unknown-kind = kind must be given and be one of: { $kinds }
+
+# Summaries
+
+synthesis-designs-without-constraints =
+    { $count ->
+        [one] { $count } design, found by ignoring the constraints, satisfies them anyway.
+       *[other] { $count } designs, found by ignoring the constraints, satisfy them anyway.
+    }
+
+# Progress
+
+synthesis-searching-nearest-miss = no design found; searching the nearest miss

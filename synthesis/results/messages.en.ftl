@@ -1,0 +1,82 @@
+# Names of checks, metrics and limits in words. German selects by the name; English writes it with spaces
+
+results-name-in-words =
+    { $name ->
+       *[other] { $words }
+    }
+
+# Parts of sentences
+
+results-quantity = { $number } { $unit }
+results-list-with-and = { $first } and { $last }
+
+# Reasons of rejection with the number of candidates
+
+results-reason-with-count = { $reason } { $count }
+results-rejected = Rejected: { $reasons }.
+
+# Why the forces of a design are unknown; the reasons follow the colon of forces-unknown
+
+results-forces-unknown = Its forces are not known: { $reason }.
+results-no-mechanism-from-dimensions = no mechanism can be built from these dimensions
+results-no-verified-motion = the design has no verified motion
+results-sliding-speed-missing = the input of this linkage slides; give its speed
+results-rotating-speed-missing = the input of this linkage turns; give its speed
+
+# Order of the designs by a measured quantity
+
+results-ranked-by-planes =
+    { $count ->
+        [one] Ranked by planes ({ $count } design arranged in planes): they need { $minimum } to { $maximum }.
+       *[other] Ranked by planes ({ $count } designs arranged in planes): they need { $minimum } to { $maximum }.
+    }
+results-ranked-by-planes-equal =
+    { $count ->
+        [one] Ranked by planes ({ $count } design arranged in planes): every buildable one needs { $planes }.
+       *[other] Ranked by planes ({ $count } designs arranged in planes): every buildable one needs { $planes }.
+    }
+results-ranked-by-planes-none-buildable =
+    { $count ->
+        [one] Ranked by planes ({ $count } design arranged in planes): none of them can be built.
+       *[other] Ranked by planes ({ $count } designs arranged in planes): none of them can be built.
+    }
+results-ranked-by-measure =
+    { $count ->
+        [one] Ranked by { $name } ({ $count } design measured): from { $minimum } to { $maximum }.
+       *[other] Ranked by { $name } ({ $count } designs measured): from { $minimum } to { $maximum }.
+    }
+results-ranked-by-equal-measure =
+    { $count ->
+        [one] Ranked by { $name } ({ $count } design measured): { $value }.
+       *[other] Ranked by { $name } ({ $count } designs measured): { $value }.
+    }
+results-ranked-by-unknown-measure =
+    { $count ->
+        [one] Ranked by { $name } ({ $count } design measured): none of them has a known { $name }.
+       *[other] Ranked by { $name } ({ $count } designs measured): none of them has a known { $name }.
+    }
+
+# Order of the designs by practicality; a band is the permitted multiple of the smallest error
+
+results-practical-first = Designs with a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size are listed first.
+results-no-design-practical = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+results-no-near-design-practical = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+results-no-design-with-even-links = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+results-no-near-design-with-even-links = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+results-even-links-first = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
+results-near-even-links-first = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
+
+# Rounding to a grid
+
+results-rounded = Rounded to the grid: { $kept } of { $count } designs still satisfy every constraint.
+
+# Ends of sentences that compare other types of linkage with the best simpler one; they follow the last word
+
+results-alternatives-not-listed = ; they are not listed because of max_designs.
+results-alternatives-listed-too = {" "}and are listed with it.
+results-alternatives-listed-instead = {" "}and are listed in its place.
+
+# Progress
+
+results-verifying = verifying
+results-verified = verified
