@@ -54,7 +54,7 @@ THIN_SPACE = "\u202f"
 it as a decimal sign."""
 
 _PACKAGES = ("kinematics", "synthesis", "service")
-_NUMBER = re.compile(r"[-−±]?\d+\.\d+(e[-+]?\d+)?")
+_NUMBER = re.compile(r"[-−±]?\d+\.\d+(e[-−+]?\d+)?")
 
 
 @dataclass(frozen=True)

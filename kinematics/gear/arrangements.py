@@ -122,7 +122,7 @@ class Arrangement:
             If ``teeth`` does not name exactly the gears of the arrangement.
         """
         if set(teeth) != set(self.places):
-            raise DimensionError("teeth", f"for {', '.join(self.places)}", sorted(teeth))
+            raise DimensionError("teeth", "kinematics-teeth-of-gears", sorted(teeth), gears=", ".join(self.places))
         meshes = []
         for one, other in self.meshes:
             bodies = self.places[one].body, self.places[other].body

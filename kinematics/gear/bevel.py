@@ -23,9 +23,9 @@ def compute_cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]
         For shafts that are parallel, or a ratio below 1.
     """
     if not 0.0 < shaft_angle < math.pi:
-        raise DimensionError("shaft_angle", "between 0 and π", shaft_angle)
+        raise DimensionError("shaft_angle", "kinematics-between-0-and-pi", shaft_angle)
     if not ratio >= 1.0:
-        raise DimensionError("ratio", "at least 1", ratio)
+        raise DimensionError("ratio", "kinematics-at-least", ratio, least=1)
     # atan2 also covers obtuse shaft angles.
     pinion = math.atan2(math.sin(shaft_angle), ratio + math.cos(shaft_angle))
     return pinion, shaft_angle - pinion
@@ -91,9 +91,7 @@ class BevelPair:
 
     def __post_init__(self) -> None:
         if not (0 < self.pinion <= self.gear and self.diametral_pitch > 0.0):
-            raise DimensionError(
-                "teeth", "positive, with no more pinion teeth than gear teeth", (self.pinion, self.gear)
-            )
+            raise DimensionError("teeth", "kinematics-pinion-not-larger", (self.pinion, self.gear))
 
     @property
     def cones(self) -> tuple[float, float]:
@@ -179,7 +177,7 @@ class BevelCones:
         small, large = sorted((self.driver, self.driven))
         # At equality the larger pitch cone opens to 90°: a crown gear.
         if not small + large * math.cos(self.shaft_angle) > MIN_CONE_COSINE * large:
-            raise DimensionError("shaft_angle", "such that both pitch cones are less than flat", self.shaft_angle)
+            raise DimensionError("shaft_angle", "kinematics-cones-not-flat", self.shaft_angle)
         # Raises for teeth that cannot mesh.
         _ = self.back_mesh
 

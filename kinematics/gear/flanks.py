@@ -44,7 +44,7 @@ def compute_corner_rounding(pressure_angle: float, dedendum: float) -> float:
     # Half the width of the rack's tooth at its tip.
     wide = 0.25 * math.pi - dedendum * math.tan(pressure_angle)
     if wide < 0.0:
-        raise DimensionError("dedendum", "no deeper than the point of the rack's tooth", dedendum)
+        raise DimensionError("dedendum", "kinematics-depth-of-rack-tooth", dedendum)
     # At most the circle that touches both flanks at the tip.
     return min(TIP_ROUNDING, wide * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle)))
 

@@ -57,10 +57,10 @@ def list_spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[t
     """
     for pairs in stages:
         if not pairs:
-            raise DimensionError("stages", "sequences of at least one gear pair", pairs)
+            raise DimensionError("stages", "kinematics-stages-of-gear-pairs", pairs)
         for driver, driven in pairs:
             if min(driver, driven) < 1:
-                raise DimensionError("teeth", "a count of at least 1", (driver, driven))
+                raise DimensionError("teeth", "kinematics-count-at-least", (driver, driven), least=1)
     speeds = []
     for engaged in itertools.product(*(range(len(pairs)) for pairs in stages)):
         # Exact fractions, so that equal speeds compare equal.
@@ -80,9 +80,9 @@ def compute_progression(lowest: float, highest: float, count: int) -> tuple[floa
         For fewer than two speeds, or limits that are not positive and rising.
     """
     if count < 2:
-        raise DimensionError("count", "at least 2", count)
+        raise DimensionError("count", "kinematics-at-least", count, least=2)
     if not 0.0 < lowest < highest:
-        raise DimensionError("speeds", "positive, the highest above the lowest", (lowest, highest))
+        raise DimensionError("speeds", "kinematics-rising-speeds", (lowest, highest))
     ratio = (highest / lowest) ** (1.0 / (count - 1))
     return ratio, [lowest * ratio**k for k in range(count)]
 

@@ -35,9 +35,11 @@ class HelicalGear:
 
     def __post_init__(self) -> None:
         if not abs(self.helix_angle) < 0.5 * math.pi:
-            raise DimensionError("helix_angle", "less than a right angle", self.helix_angle)
+            raise DimensionError("helix_angle", "kinematics-less-than-right-angle", self.helix_angle)
         if not (self.teeth > 0 and 0.0 < self.normal_module < math.inf):
-            raise DimensionError("teeth and normal_module", "positive", (self.teeth, self.normal_module))
+            raise DimensionError(
+                "kinematics-teeth-and-normal-module", "kinematics-positive", (self.teeth, self.normal_module)
+            )
 
     @property
     def transverse_module(self) -> float:

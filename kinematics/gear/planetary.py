@@ -57,13 +57,13 @@ class Mesh:
     def __post_init__(self) -> None:
         for name, teeth in (("first_teeth", self.first_teeth), ("second_teeth", self.second_teeth)):
             if teeth < 1:
-                raise DimensionError(name, "a count of at least 1", teeth)
+                raise DimensionError(name, "kinematics-count-at-least", teeth, least=1)
         if self.sense not in (EXTERNAL, INTERNAL):
-            raise DimensionError("sense", "+1 or −1", self.sense)
+            raise DimensionError("sense", "kinematics-sign", self.sense)
         bodies = (self.first, self.second, self.carrier)
         # With two equal bodies the equation would degenerate to a lock.
         if len(set(bodies)) != 3:
-            raise DimensionError("bodies of a mesh", "three different ones", bodies)
+            raise DimensionError("kinematics-bodies-of-mesh", "kinematics-three-different-bodies", bodies)
 
     def build_equation(self) -> dict[str, int]:
         """Build the coefficients, by body, of the speed equation; its right side is 0."""
@@ -149,7 +149,7 @@ def solve_speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iter
     pairs = list(locked)
     for body in [*known, *(body for pair in pairs for body in pair)]:
         if body not in bodies and body != GROUND:
-            raise DimensionError("body", f"one of {', '.join(bodies)}", body)
+            raise DimensionError("body", "kinematics-body-of-train", body, bodies=", ".join(bodies))
     for mesh in train.meshes:
         system.add({body: Fraction(c) for body, c in mesh.build_equation().items() if body != GROUND}, Fraction(0))
     for first, second in pairs:

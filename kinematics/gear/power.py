@@ -133,7 +133,7 @@ def solve_power_flow(
     turning = {**{body: _get_known_speed(body, speeds) for body in train.bodies}, GROUND: Fraction(0)}
     for body in (*loads, *known):
         if body not in train.bodies or body in train.planets:
-            raise DimensionError("load", f"on one of the members {', '.join(train.members)}", body)
+            raise DimensionError("load", "kinematics-load-on-member", body, members=", ".join(train.members))
     relative = [turning[mesh.first] - turning[mesh.carrier] for mesh in train.meshes]
     # Without losses first: it defines the input power and the likely directions.
     ideal = _balance_bodies(train, loads, known, [Fraction(1)] * len(shares))
@@ -162,16 +162,16 @@ def solve_power_flow(
 def _check_efficiencies(train: Train, efficiency: Exact | Sequence[Exact]) -> list[Fraction]:
     each = list(efficiency) if isinstance(efficiency, Sequence) else [efficiency] * len(train.meshes)
     if len(each) != len(train.meshes):
-        raise DimensionError("efficiency", f"one number, or {len(train.meshes)} for the meshes", len(each))
+        raise DimensionError("efficiency", "kinematics-efficiency-of-meshes", len(each), count=len(train.meshes))
     for share in each:
         if not 0 < share <= 1:
-            raise DimensionError("efficiency", "above 0 and at most 1", share)
+            raise DimensionError("efficiency", "kinematics-above-0-to-1", share)
     return [Fraction(share) for share in each]
 
 
 def _get_known_speed(body: str, speeds: Mapping[str, Exact]) -> Fraction:
     if speeds.get(body) is None:
-        raise DimensionError("speeds", "known for every body", body)
+        raise DimensionError("speeds", "kinematics-known-for-every-body", body)
     return Fraction(speeds[body])
 
 

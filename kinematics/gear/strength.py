@@ -117,7 +117,7 @@ def compute_bending_geometry(contact: Contact, second: bool) -> float:
     phi = gear.pressure_angle
     stress = math.cos(angle) / math.cos(mesh.pressure_angle) * float(bent[at])
     if not stress > 0.0:
-        raise DimensionError("tooth", "one that its load bends", gear)
+        raise DimensionError("tooth", "kinematics-tooth-bent-by-load", gear)
     curved = _compute_fillet_radius(gear) / gear.module
     h, low, high = 0.34 - 0.4583662 * phi, 0.316 - 0.4583662 * phi, 0.290 + 0.4583662 * phi
     raised = h + (float(thick[at]) / curved) ** low * (float(thick[at]) / float(height[at])) ** high
@@ -172,7 +172,7 @@ def _find_sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArra
     # Sections at the apex itself would divide by a vanishing height.
     below = (apex - depth > 1e-6 * gear.module) & (half > 0.0)
     if not below.any():
-        raise DimensionError("tooth", "one with a section below its load", gear)
+        raise DimensionError("tooth", "kinematics-tooth-with-section", gear)
     return (apex - depth[below]) / gear.module, 2.0 * half[below] / gear.module
 
 

@@ -74,7 +74,7 @@ def invert_involute(value: float) -> float:
         For a negative value.
     """
     if not value >= 0.0:
-        raise DimensionError("value", "zero or positive", value)
+        raise DimensionError("value", "kinematics-zero-or-more", value)
     if value == 0.0:
         return 0.0
     return math.atan(invert_involute_tangent(value))
@@ -102,15 +102,19 @@ class Gear:
 
     def __post_init__(self) -> None:
         if not self.teeth > 0:
-            raise DimensionError("teeth", "a positive number", self.teeth)
+            raise DimensionError("teeth", "kinematics-positive", self.teeth)
         if not 0.0 < self.module < math.inf:
-            raise DimensionError("module", "positive and finite", self.module)
+            raise DimensionError("module", "kinematics-positive-and-finite", self.module)
         if not 0.0 < self.pressure_angle < 0.5 * math.pi:
-            raise DimensionError("pressure_angle", "between 0 and π/2", self.pressure_angle)
+            raise DimensionError("pressure_angle", "kinematics-between-0-and-half-pi", self.pressure_angle)
         if not (self.addendum > 0.0 and self.dedendum > 0.0):
-            raise DimensionError("addendum and dedendum", "positive", (self.addendum, self.dedendum))
+            raise DimensionError(
+                "kinematics-addendum-and-dedendum", "kinematics-positive", (self.addendum, self.dedendum)
+            )
         if not (self.tip_radius > 0.0 and self.root_radius > 0.0):
-            raise DimensionError("tip and root radius", "positive", (self.tip_radius, self.root_radius))
+            raise DimensionError(
+                "kinematics-tip-and-root-radius", "kinematics-positive", (self.tip_radius, self.root_radius)
+            )
 
     @property
     def _outward(self) -> float:
@@ -212,13 +216,15 @@ class Mesh:
     def __post_init__(self) -> None:
         one, two = self.pinion, self.gear
         if one.internal:
-            raise DimensionError("pinion", "external", one)
+            raise DimensionError("pinion", "kinematics-external-gear", one)
         if (one.module, one.pressure_angle) != (two.module, two.pressure_angle):
-            raise DimensionError("module and pressure angle", "the same on both gears", (one, two))
+            raise DimensionError("kinematics-module-and-pressure-angle", "kinematics-same-on-both-gears", (one, two))
         if two.internal and two.teeth <= one.teeth:
-            raise DimensionError("internal gear", "of more teeth than its pinion", (one.teeth, two.teeth))
+            raise DimensionError(
+                "kinematics-internal-gear", "kinematics-more-teeth-than-pinion", (one.teeth, two.teeth)
+            )
         if not 0.0 <= self.pressure_angle < 0.5 * math.pi:
-            raise DimensionError("centre distance", "such that the base circles do not overlap", self.given_distance)
+            raise DimensionError("kinematics-centre-distance", "kinematics-base-circles-apart", self.given_distance)
 
     @property
     def _side(self) -> float:

@@ -113,7 +113,7 @@ class TrainStage:
         if self.shifts == (0.0, 0.0):
             return tuple(Mesh.standard((min(pair), max(pair)), self.module, pressure_angle) for pair in pairs)
         if self.idlers:
-            raise DimensionError("shifts", "absent in a stage with idlers", self.shifts)
+            raise DimensionError("shifts", "kinematics-absent-with-idlers", self.shifts)
         # Keep each shift with its gear while the smaller one becomes the pinion.
         ends = sorted(zip((self.driver, self.driven), self.shifts, strict=True), key=lambda end: end[0])
         pinion, gear = (Gear(teeth, self.module, pressure_angle, shift=shift) for teeth, shift in ends)
@@ -123,9 +123,9 @@ class TrainStage:
     def _build_other_meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
         """Return the mesh of a stage that is not external."""
         if self.idlers:
-            raise DimensionError("idlers", f"absent in a stage of kind {self.kind}", self.idlers)
+            raise DimensionError("idlers", "kinematics-absent-in-stage", self.idlers, kind=self.kind)
         if self.kind != "helical" and self.shifts != (0.0, 0.0):
-            raise DimensionError("shifts", f"absent in a stage of kind {self.kind}", self.shifts)
+            raise DimensionError("shifts", "kinematics-absent-in-stage", self.shifts, kind=self.kind)
         if self.kind == "worm":
             # Raises for impossible dimensions.
             _ = self.worm(pressure_angle)
@@ -188,7 +188,7 @@ class OrdinaryTrain:
 
     def __post_init__(self) -> None:
         if not self.stages:
-            raise DimensionError("stages", "at least one", self.stages)
+            raise DimensionError("stages", "kinematics-at-least-one-stage", self.stages)
         # Building the meshes raises for impossible gears.
         _ = self.meshes
 

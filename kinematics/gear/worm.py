@@ -41,7 +41,7 @@ class WormSet:
     def __post_init__(self) -> None:
         numbers = self.threads, self.gear_teeth, self.axial_pitch, self.worm_diameter
         if not all(0.0 < number < math.inf for number in numbers):
-            raise DimensionError("worm set", "of positive numbers", numbers)
+            raise DimensionError("kinematics-worm-set", "kinematics-positive-numbers", numbers)
 
     @property
     def ratio(self) -> float:
@@ -185,7 +185,7 @@ class WormDrive:
         along = math.cos(phi) * math.cos(lead) - friction * math.sin(lead)
         # A nonpositive component means that friction holds the teeth.
         if not min(around, along) > 0.0:
-            raise DimensionError("friction", "less than the value at which friction locks the worm", abs(friction))
+            raise DimensionError("friction", "kinematics-below-worm-lock", abs(friction))
         worm = 2.0 * torque / self.dimensions.worm_diameter
         normal = worm / around
         gear = normal * along

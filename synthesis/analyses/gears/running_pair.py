@@ -135,7 +135,7 @@ class GivenGearPair(Statement):
             raise MechanismError(self._locate_error(error), str(error)) from error
 
     def _locate_error(self, error: DimensionError) -> str:
-        named = {"centre distance": "/centre_distance", "dedendum": "/pressure_angle"}
+        named = {"kinematics-centre-distance": "/centre_distance", "dedendum": "/pressure_angle"}
         return named.get(error.name, "/teeth")
 
     def _build_pair(self) -> RunningPair:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from kinematics.message import compose, join_messages
 from synthesis.kinds.gear_train.construction.power_capacity import StrengthResult, find_carrying_trains
 from synthesis.kinds.gear_train.construction.train import build_mechanism, build_stages, compute_sign
 from synthesis.kinds.gear_train.design import (
@@ -17,18 +20,18 @@ from synthesis.kinds.gear_train.search.search import Outcome, Train, order_train
 from synthesis.kinds.gear_train.search.task import Task, build_task
 from synthesis.kinds.gear_train.statement.stages import GEARS
 from synthesis.kinds.gear_train.verification import verify
-from synthesis.model.counting import format_integer
 from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.strength import describe_power_rejections, describe_too_weak
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
 
-SEARCH_NOTE = "Feasible centre distances are searched in steps of the sum of shifts, so this is not proven."
+SEARCH_NOTE = "gear_train-distances-in-steps"
+"""Message on a search that proves nothing, because the distances that a mesh can have were searched in steps."""
 
 
 def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
     """Find the best gear trains for a ratio, proven by an exhaustive search."""
-    progress(0.0, "listing gears")
+    progress(0.0, compose("gear_train-listing-gears"))
     task = build_task(problem, coprime=problem.hunting_tooth == "require")
     sifting = CandidateLog[GearTrainDesign](problem, undriven="gears")
     borne: StrengthResult | None = None
@@ -47,7 +50,7 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
     if borne is not None:
         sifting.reject("strength", borne.failed)
         complete = complete and (borne.every or len(made) == problem.max_designs)
-    progress(1.0, "verified")
+    progress(1.0, compose("gear_train-verified"))
     return GearTrainResult(
         designs=sifting.select_designs(list),
         search=GearTrainSearch(
@@ -100,7 +103,7 @@ def _rank_trains(problem: GearTrainProblem, task: Task, wanted: int, progress: P
     outcome = search(task, problem.exact_tolerance, wanted, progress)
     if problem.hunting_tooth != "prefer" or not outcome.trains:
         return outcome
-    progress(0.0, "searching trains with hunting teeth")
+    progress(0.0, compose("gear_train-searching-hunting-teeth"))
     hunting = search(build_task(problem, coprime=True), problem.exact_tolerance, wanted, progress)
     # Of two pairings of the same gears, the one with hunting teeth represents both.
     met = {_describe_gears(task, train) for train in hunting.trains}
@@ -129,63 +132,79 @@ def _write_summary(
     borne: StrengthResult | None,
 ) -> str:
     """Write one or two sentences: the result, or the reason why there is none."""
-    number = format_integer(outcome.combinations)
-    if accepted and not task.by_size:
-        best = accepted[0]
-        stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
-        error = best.metrics.relative_error
-        how = "exactly the requested ratio" if error == 0.0 else f"a relative error of {error:.3g}"
-        tied = (
-            "no other train is as close" if outcome.ties == 1 else f"{format_integer(outcome.ties)} trains are as close"
-        )
-        if borne is not None:
-            return f"{stages} has {how}. {describe_power_rejections(borne.failed)} {_describe_scope(problem, number)}"
-        return f"{stages} has {how}; {tied}. {_describe_scope(problem, number)}"
     if accepted:
-        best = accepted[0]
-        stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
-        within = 100.0 * float(problem.exact_tolerance or 0)
-        carrying = "" if borne is None else f" {describe_power_rejections(borne.failed)}"
-        return (
-            f"{stages} is the smallest train within {within:.3g} %, with a relative error of "
-            f"{best.metrics.relative_error:.3g}.{carrying} {_describe_scope(problem, number)}"
-        )
+        sentences = [
+            _describe_best(problem, task, outcome.ties, accepted[0]),
+            "" if borne is None else describe_power_rejections(borne.failed),
+            _describe_scope(problem, outcome.combinations),
+        ]
+        return join_messages(sentences)
     if outcome.trains:
-        return "No train passed the verification."
+        return compose("gear_train-none-verified")
     if borne is not None and borne.failed and problem.strength is not None:
         return describe_too_weak(problem.strength, borne.failed, borne.every, borne.strongest)
     if problem.searches_distances:
-        return f"No train found: {_explain_none(problem, task, outcome)}. {SEARCH_NOTE}"
-    return f"No such train exists: {_explain_none(problem, task, outcome)}."
+        none = compose("gear_train-none-found", reason=_explain_none(problem, task, outcome))
+        return join_messages([none, compose(SEARCH_NOTE)])
+    return compose("gear_train-none-exists", reason=_explain_none(problem, task, outcome))
 
 
-def _describe_scope(problem: GearTrainProblem, number: str) -> str:
+def _describe_best(problem: GearTrainProblem, task: Task, ties: int, best: GearTrainDesign) -> str:
+    """Describe the best train in a sentence, with the number of equally exact ones if all of them were compared."""
+    meshes = _format_meshes((stage.driver, stage.driven) for stage in best.mechanism.stages)
+    error = f"{best.metrics.relative_error:.3g}"
+    if task.by_size:
+        within = 100.0 * float(problem.exact_tolerance or 0)
+        return compose("gear_train-best-smallest", meshes=meshes, tolerance=f"{within:.3g}", error=error)
+    exact = best.metrics.relative_error == 0.0
+    if problem.strength is not None:
+        if exact:
+            return compose("gear_train-best-exact", meshes=meshes)
+        return compose("gear_train-best-nearest", meshes=meshes, error=error)
+    if exact:
+        return compose("gear_train-best-exact-of-ties", meshes=meshes, ties=ties)
+    return compose("gear_train-best-nearest-of-ties", meshes=meshes, error=error, ties=ties)
+
+
+def _format_meshes(meshes: Iterable[tuple[int, int]]) -> str:
+    """Format the tooth numbers of meshes.
+
+    >>> _format_meshes([(20, 43), (17, 58)])
+    '20:43, 17:58'
+    """
+    return ", ".join(f"{driver}:{driven}" for driver, driven in meshes)
+
+
+def _describe_scope(problem: GearTrainProblem, count: int) -> str:
     """Describe the scope of the answer: the trains among which it is the best, and whether that is proven."""
     if problem.searches_distances:
-        return f"It is the best of all {number} trains with the given tooth numbers. {SEARCH_NOTE}"
+        return join_messages([compose("gear_train-best-of-searched", count=count), compose(SEARCH_NOTE)])
     own = any(stage.limits(name) is not None for stage in problem.stages or [] for name in GEARS)
-    besides = ", with the gears given by stages unchanged" if own and problem.teeth is not None else ""
-    return f"Proven over all {number} trains with the given tooth numbers{besides}."
+    unchanged = own and problem.teeth is not None
+    return compose("gear_train-proven-with-given-gears" if unchanged else "gear_train-proven", count=count)
 
 
 def _explain_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:
     """Explain why the search is empty, as the end of a sentence."""
     if not task.stage_counts:
         if problem.reverted and problem.required_sign < 0 and problem.most_stages < 3:
-            return "in a reverted train of two stages, input and output turn in the same direction; allow three stages"
+            return compose("gear_train-two-stages-turn-same")
         if problem.stock is not None:
-            return f"a stock of {sum(problem.count_stock().values())} gears is too small for such a train"
-        return "no number of stages satisfies the constraints"
+            return compose("gear_train-stock-too-small", count=sum(problem.count_stock().values()))
+        return compose("gear_train-no-stage-count")
     if outcome.reach is None:
-        return "no two gears form a stage that satisfies the constraints"
+        return compose("gear_train-no-stage")
     low, high = outcome.reach
     if outcome.nearest is not None:
         error = task.target.compute_relative_error(outcome.nearest.ratio)
-        meshes = ", ".join(f"{a}:{b}" for a, b in outcome.nearest.meshes)
-        return f"the nearest train, {meshes}, has a relative error of {error:.3g}, which exceeds the tolerance"
+        meshes = _format_meshes(outcome.nearest.meshes)
+        return compose("gear_train-nearest-too-far", meshes=meshes, error=f"{error:.3g}")
     if task.target.compare(high) > 0 or task.target.compare(low) < 0:
-        return (
-            f"the ratio {float(task.target):.6g} is out of reach; the permitted meshes give {float(low):.6g} to "
-            f"{float(high):.6g} in {max(task.stage_counts)} stages"
+        return compose(
+            "gear_train-ratio-unreachable",
+            ratio=f"{float(task.target):.6g}",
+            least=f"{float(low):.6g}",
+            most=f"{float(high):.6g}",
+            stages=max(task.stage_counts),
         )
-    return "no combination of gears satisfies all constraints"
+    return compose("gear_train-no-combination")

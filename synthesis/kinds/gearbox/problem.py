@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.gear.gearbox import compute_progression, list_preferred_numbers, series_ratio
+from kinematics.message import compose
 from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.gears.request import MAX_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, find_tooth_errors
 from synthesis.model.problem import Contradiction, Count, Flag, PositiveNumber, ProblemBase, Sizable, Statement
@@ -44,11 +45,11 @@ class SpindleSpeeds(Statement):
     @model_validator(mode="after")
     def _validate_progression(self) -> Self:
         if sum(stated is not None for stated in (self.max, self.ratio, self.series)) != 1:
-            raise ValueError("give exactly one of max, ratio and series")
+            raise ValueError(compose("gearbox-one-of-max-ratio-series"))
         if self.max is not None and self.max <= self.min:
-            raise ValueError("max must be above min")
+            raise ValueError(compose("gearbox-max-not-above-min"))
         if self.series is not None and list_preferred_numbers(self.series, self.min, self.count, self.step) is None:
-            raise ValueError(f"min must be a number of the series {self.series}")
+            raise ValueError(compose("gearbox-min-outside-series", series=self.series))
         return self
 
     @property
@@ -73,7 +74,7 @@ class StageRatio(Statement):
     @model_validator(mode="after")
     def _validate_order(self) -> Self:
         if self.min >= self.max:
-            raise ValueError("min must be below max")
+            raise ValueError(compose("gearbox-min-not-below-max"))
         return self
 
 
@@ -160,26 +161,26 @@ class GearboxProblem(ProblemBase):
         # Beyond half a step speeds and nominal values can no longer be assigned.
         half = 0.5 * math.log(self.speeds.progression_ratio)
         if self.widest >= half:
-            detail = f"must be below half a step, {half:.4g}; beyond that a speed is nearer to another nominal one"
+            detail = compose("gearbox-tolerance-exceeds-half-step", half=f"{half:.4g}")
             contradictions.append(Contradiction("/tolerance", detail))
         contradictions += find_tooth_errors(self.teeth, self.tooth_sum)
         if self.structure is not None and math.prod(self.structure) != self.speeds.count:
-            detail = f"gives {math.prod(self.structure)} speeds, but speeds.count is {self.speeds.count}"
+            detail = compose("gearbox-structure-count-wrong", count=math.prod(self.structure), stated=self.speeds.count)
             contradictions.append(Contradiction("/structure", detail))
         if self.structure is not None and self.structure.count(1) > 1:
             # Every ratio of one fixed stage is combined with every ratio of the other, which takes too much memory.
-            contradictions.append(
-                Contradiction("/structure", "at most one fixed stage is possible; merge the others with it")
-            )
+            contradictions.append(Contradiction("/structure", compose("gearbox-several-fixed-stages")))
         if self.structure is not None and self.fixed_stage:
-            contradictions.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
+            contradictions.append(Contradiction("/fixed_stage", compose("gearbox-fixed-stage-and-structure")))
         if self.speeds.progression_ratio ** (self.speeds.count - 1) > MAX_SPEED_RANGE:
-            contradictions.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
+            contradictions.append(Contradiction("/speeds", compose("gearbox-speed-range-too-wide")))
         if self.tooth_sum.max > MAX_TOOTH_SUM:
-            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MAX_TOOTH_SUM}"))
+            contradictions.append(
+                Contradiction("/tooth_sum/max", compose("gearbox-tooth-sum-too-large", limit=MAX_TOOTH_SUM))
+            )
         elif (pairs := self.pairs_of_a_stage) > MAX_PAIRS:
-            detail = f"permits {pairs} pairs of gears for a stage, above the limit of {MAX_PAIRS}; "
-            contradictions.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))
+            detail = compose("gearbox-too-many-pairs", count=pairs, limit=MAX_PAIRS)
+            contradictions.append(Contradiction("/tooth_sum/max", detail))
         return contradictions
 
     @property

@@ -9,6 +9,7 @@ from functools import partial
 from typing import NamedTuple
 
 from kinematics.gear.gearbox import list_preferred_numbers
+from kinematics.message import compose, join_messages
 from synthesis.kinds.gearbox.design import (
     GearboxDesign,
     GearboxMechanism,
@@ -21,7 +22,6 @@ from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.gearbox.stages import Options, StageLimits, list_stage_options
 from synthesis.kinds.gearbox.structures import Group, Structure, compute_spread, format_formula, list_structures
 from synthesis.kinds.gearbox.verification import measure, verify
-from synthesis.model.counting import format_count
 from synthesis.model.gears.answer import GearPairTeeth
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
@@ -62,7 +62,7 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     kinds = {tuple(sorted(structure)): structure for structure in tried}
     covered, choices = 0, {}
     for k, groups in enumerate(kinds):
-        label = f"structure {format_formula(kinds[groups])}"
+        label = compose("gearbox-searching-structure", formula=format_formula(kinds[groups]))
 
         def report_share(share: float, done: int = k, message: str = label) -> None:
             progress((done + share) / len(kinds), message)
@@ -79,11 +79,11 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     unsearched = _describe_unsearched(problem, tried)
     sifting = CandidateLog[GearboxDesign](problem)
     sifting.verify_best(gearboxes[: problem.max_designs], covered, partial(_build_design, problem))
-    progress(1.0, "done")
+    progress(1.0, compose("gearbox-done"))
     return GearboxResult(
         designs=sifting.select_designs(list),
         search=sifting.build_search("exhaustive", complete=not unsearched and not sifting.failed),
-        summary=_write_summary(problem, tried, sifting.passed, covered) + unsearched,
+        summary=join_messages([_write_summary(problem, tried, sifting.passed, covered), unsearched]),
         progression_ratio=ratio,
         structures=[_build_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
     )
@@ -197,30 +197,26 @@ def _describe_unsearched(problem: GearboxProblem, tried: list[Structure]) -> str
     two: {0, 1, 4, 5} with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
     """
     if problem.widest > problem.structure_tolerance:
-        return (
-            " At this tolerance, above a quarter of a step, gearboxes without a structural formula exist; they "
-            "were not searched."
-        )
+        return compose("gearbox-unstructured-not-searched")
     several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
     if any(len(pairs) > 1 and max(pairs) > 3 for pairs in several):
-        return " Stages of four or six pairs with two characteristics were not searched."
+        return compose("gearbox-split-stages-not-searched")
     return ""
 
 
 def _write_summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
     """Write the coverage of the search and the best gearbox in one sentence."""
-    count, combinations = problem.speeds.count, format_count(covered, "combination")
+    count = problem.speeds.count
     if not tried:
-        return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
+        return compose("gearbox-speeds-not-factorable", count=count, pairs=problem.max_pairs)
+    searched = {
+        "structures": compose("gearbox-structures", count=len(tried)),
+        "combinations": compose("gearbox-combinations", count=covered),
+    }
     if not passed:
-        return (
-            f"No gearbox ({format_count(len(tried), 'structure')}, {combinations} of tooth numbers) keeps all {count} "
-            f"speeds within {100.0 * problem.widest:.3g} % and the limits."
-        )
+        return compose("gearbox-none-found", count=count, tolerance=f"{100.0 * problem.widest:.3g}", **searched)
     first = passed[0]
-    error = first.metrics.max_error
-    kept = f"within {100.0 * error:.3g} %" if error else "exactly"
-    return (
-        f"{first.mechanism.formula} keeps {count} speeds {kept}: the best of {format_count(len(tried), 'structure')} "
-        f"and {combinations} of tooth numbers."
-    )
+    formula, error = first.mechanism.formula, first.metrics.max_error
+    if not error:
+        return compose("gearbox-best-exact", formula=formula, count=count, **searched)
+    return compose("gearbox-best-within", formula=formula, count=count, error=f"{100.0 * error:.3g}", **searched)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.gears.request import MAX_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, find_tooth_errors
 from synthesis.model.problem import Contradiction, Flag, ProblemBase
 
@@ -65,9 +66,11 @@ class LayshaftProblem(ProblemBase):
         contradictions = find_tooth_errors(self.teeth, self.tooth_sum)
         for k, (before, after) in enumerate(zip(self.ratios, self.ratios[1:], strict=False), start=1):
             if after >= before:
-                contradictions.append(Contradiction(f"/ratios/{k}", "must be below the ratio of the previous gear"))
+                contradictions.append(Contradiction(f"/ratios/{k}", compose("layshaft_gearbox-ratios-not-falling")))
         if self.rank_by == "size" and self.tolerance is None:
-            contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratios"))
+            contradictions.append(Contradiction("/tolerance", compose("layshaft_gearbox-size-needs-tolerance")))
         if self.tooth_sum.max > MAX_TOOTH_SUM:
-            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MAX_TOOTH_SUM}"))
+            contradictions.append(
+                Contradiction("/tooth_sum/max", compose("layshaft_gearbox-tooth-sum-too-large", limit=MAX_TOOTH_SUM))
+            )
         return contradictions

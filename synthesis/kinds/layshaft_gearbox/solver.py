@@ -16,6 +16,7 @@ import numpy as np
 
 from kinematics.arrays import Integers, Real
 from kinematics.gear.gearbox import compute_layshaft_ratios
+from kinematics.message import compose
 from synthesis.kinds.layshaft_gearbox.design import (
     LayshaftDesign,
     LayshaftGear,
@@ -26,7 +27,6 @@ from synthesis.kinds.layshaft_gearbox.design import (
 )
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.kinds.layshaft_gearbox.verification import CLEARANCE_TOLERANCE, measure, verify
-from synthesis.model.counting import format_count
 from synthesis.model.gears.answer import GearPairTeeth, Ratio
 from synthesis.model.gears.mesh_limits import has_no_external_interference
 from synthesis.model.gears.ratio_target import parse_decimal
@@ -78,7 +78,7 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
     covered = 0
     sums = range(problem.tooth_sum.min, problem.tooth_sum.max + 1)
     for k, size in enumerate(sums):
-        progress(k / len(sums), f"tooth sum {size}")
+        progress(k / len(sums), compose("layshaft_gearbox-searching-tooth-sum", sum=size))
         level = _search_tooth_sum(problem, size)
         covered += level.covered
         own = _select_boxes(problem, size, level, problem.max_designs)
@@ -88,7 +88,7 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
     ranked = boxes if problem.rank_by == "error" else best
     chosen = select_within_tolerance(ranked, problem.tolerance, problem.max_designs)
     sifting.verify_best(chosen, covered, partial(_build_design, problem))
-    progress(1.0, "done")
+    progress(1.0, compose("layshaft_gearbox-done"))
     return LayshaftResult(
         designs=sifting.select_designs(list),
         search=sifting.build_search("exhaustive", complete=not sifting.failed),
@@ -232,14 +232,17 @@ def _build_pareto(box: _Box) -> ParetoLayshaft:
 
 def _write_summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
     """Write the coverage of the search and the best gearbox in one sentence."""
-    searched = f"{format_count(covered, 'combination')} of tooth numbers searched"
+    searched = compose("layshaft_gearbox-combinations-searched", count=covered)
     if passed:
-        first = passed[0]
-        return (
-            f"A tooth sum of {first.metrics.tooth_sum} keeps all {len(first.metrics.errors)} ratios within "
-            f"{100.0 * first.metrics.max_error:.3g} %; {searched}."
+        found = passed[0].metrics
+        return compose(
+            "layshaft_gearbox-best",
+            sum=found.tooth_sum,
+            count=len(found.errors),
+            error=f"{100.0 * found.max_error:.3g}",
+            searched=searched,
         )
     if not boxes:
-        return f"No gearbox keeps the limits; {searched}."
-    nearest = 100.0 * float(boxes[0].error)
-    return f"No gearbox keeps all ratios within the tolerance: the best has an error of {nearest:.3g} %; {searched}."
+        return compose("layshaft_gearbox-none-within-limits", searched=searched)
+    nearest = f"{100.0 * float(boxes[0].error):.3g}"
+    return compose("layshaft_gearbox-none-within-tolerance", error=nearest, searched=searched)

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.message import compose
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gears.planet_strength import PAIRS_NOTE, PlanetPower
 from synthesis.model.gears.ratio_target import parse_target
@@ -219,20 +220,18 @@ class PlanetaryProblem(ProblemBase):
         contradictions = []
         if self.modules is not None:
             if self.strength is None:
-                detail = "choosing between modules needs a power; give strength, or one module"
+                detail = compose("planetary_train-modules-need-power")
                 contradictions.append(Contradiction("/modules", detail))
             if self.module != 1.0:
-                contradictions.append(Contradiction("/modules", "omit module, or omit modules"))
+                contradictions.append(Contradiction("/modules", compose("planetary_train-module-and-modules")))
             if len(set(self.modules)) < len(self.modules):
-                contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
+                contradictions.append(Contradiction("/modules", compose("planetary_train-modules-repeat")))
         if self.strength is None:
             return contradictions
         wrong = [*self.strength.find_errors(), *self.strength.find_planet_errors(self.planets)]
         contradictions += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
         if self.arrangement == "bevel_differential":
-            contradictions.append(
-                Contradiction("/strength", "strength is estimated for spur gears only, not for bevel gears")
-            )
+            contradictions.append(Contradiction("/strength", compose("planetary_train-strength-of-bevel-gears")))
         return contradictions
 
     def _check_members(self) -> list[Contradiction]:
@@ -242,27 +241,31 @@ class PlanetaryProblem(ProblemBase):
         known = sorted({member for row in rows for member in row.members})
         for k, (part, member) in enumerate(parts.items()):
             if member is not None and member not in known:
-                contradictions.append(Contradiction(f"/{part}", f"expected one of {', '.join(known)}, got {member!r}"))
+                detail = compose("planetary_train-unknown-member", members=", ".join(known), member=f"{member!r}")
+                contradictions.append(Contradiction(f"/{part}", detail))
             elif member is not None and member in list(parts.values())[:k]:
-                contradictions.append(Contradiction(f"/{part}", f"{member} already has another role"))
+                detail = compose("planetary_train-member-repeats", member=member)
+                contradictions.append(Contradiction(f"/{part}", detail))
         if not contradictions and not self.arrangements:
-            contradictions.append(Contradiction("/input", "no arrangement has all the given members"))
+            contradictions.append(Contradiction("/input", compose("planetary_train-no-arrangement-fits")))
         return contradictions
 
     def _check_limits(self) -> list[Contradiction]:
         contradictions = []
         teeth = self.teeth
         if teeth.min > teeth.max:
-            contradictions.append(Contradiction("/teeth/max", "must not be below min"))
+            contradictions.append(Contradiction("/teeth/max", compose("planetary_train-max-below-min")))
         rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
         known = sorted({gear for row in rows for gear in row.gear_names})
         for gear, own in teeth.gears.items():
             if gear not in known:
-                contradictions.append(Contradiction(f"/teeth/gears/{gear}", f"expected one of {', '.join(known)}"))
+                detail = compose("planetary_train-unknown-gear", gears=", ".join(known))
+                contradictions.append(Contradiction(f"/teeth/gears/{gear}", detail))
             elif own.min > own.max:
-                contradictions.append(Contradiction(f"/teeth/gears/{gear}/max", "must not be below min"))
+                detail = compose("planetary_train-max-below-min")
+                contradictions.append(Contradiction(f"/teeth/gears/{gear}/max", detail))
         if self.rank_by == "size" and self.tolerance is None:
-            contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
+            contradictions.append(Contradiction("/tolerance", compose("planetary_train-size-needs-tolerance")))
         return contradictions
 
     def _check_extent(self) -> list[Contradiction]:
@@ -274,9 +277,11 @@ class PlanetaryProblem(ProblemBase):
                     low, high = self.teeth.limits(gear, row.places[gear].internal)
                     count *= max(0, high - low + 1)
                 if count > MAX_COMBINATIONS:
-                    detail = (
-                        f"{row.name} has {count:.2g} combinations of teeth, more than the limit of "
-                        f"{MAX_COMBINATIONS:.0e}"
+                    detail = compose(
+                        "planetary_train-too-many-combinations",
+                        arrangement=row.name,
+                        combinations=f"{count:.2g}",
+                        limit=f"{MAX_COMBINATIONS:.0e}",
                     )
-                    return [Contradiction("/teeth", f"{detail}; narrow the limits, or give limits for single gears")]
+                    return [Contradiction("/teeth", detail)]
         return []

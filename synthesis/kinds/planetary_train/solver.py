@@ -11,6 +11,7 @@ from collections import Counter
 from fractions import Fraction
 from functools import partial
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.planetary_train.build import build_demands, build_mechanism
 from synthesis.kinds.planetary_train.design import (
     ParetoPlanetaryTrain,
@@ -35,7 +36,6 @@ from synthesis.kinds.planetary_train.power_capacity import (
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
 from synthesis.kinds.planetary_train.verification import measure, verify
-from synthesis.model.counting import format_count, format_integer
 from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.ratio_target import format_ratio
 from synthesis.model.gears.strength import describe_power_rejections, describe_too_weak
@@ -62,7 +62,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     ranking, listing = _Ranking(problem), TrainListing(problem)
     rows = problem.arrangements
     for k, arrangement in enumerate(rows):
-        progress(k / len(rows), f"{arrangement.name}: tooth numbers")
+        progress(k / len(rows), compose("planetary_train-listing-teeth", arrangement=arrangement.name))
         numbers = [
             ToothNumbers(arrangement, planets, build_demands(problem, arrangement))
             for planets in arrangement.planet_sets
@@ -75,15 +75,21 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
         ]
         roles = problem.list_roles(arrangement)
         for j, members in enumerate(roles):
-            progress((k + j / len(roles)) / len(rows), f"{arrangement.name}: {' to '.join(members[:2])}")
+            message = compose(
+                "planetary_train-searching-members",
+                arrangement=arrangement.name,
+                input=members[0],
+                output=members[1],
+            )
+            progress((k + j / len(roles)) / len(rows), message)
             ranking.record_nearest(
                 numbers, find_nearest(arrangement, tables, members, problem.target, problem.max_designs)
             )
             listing.add(arrangement, tables, members)
     if problem.strength is not None:
-        progress(1.0, "judging the strength of the trains")
+        progress(1.0, compose("planetary_train-judging-strength"))
         return ranking.build_carrying_result(find_carrying_trains(problem, problem.strength, listing))
-    progress(1.0, "done")
+    progress(1.0, compose("planetary_train-done"))
     return ranking.build_result()
 
 
@@ -153,13 +159,11 @@ class _Ranking:
         made = [one.mechanism for one in borne.best]
         sifting.verify_best(made, self._sound - borne.failed, partial(_build_design, problem))
         search = sifting.build_search("exhaustive", complete=borne.proven and not sifting.failed)
-        remark = ""
-        if sifting.passed:
-            remark = f" {describe_power_rejections(borne.failed)}"
+        remark = describe_power_rejections(borne.failed) if sifting.passed else ""
         return PlanetaryResult(
             designs=sifting.select_designs(list),
             search=PlanetarySearch(**dict(search), judged=borne.judged, every_judged=borne.every),
-            summary=self._explain_too_weak(borne) or f"{self._write_summary(borne.ties)}{remark}",
+            summary=self._explain_too_weak(borne) or join_messages([self._write_summary(borne.ties), remark]),
             ties=borne.ties,
             pareto=[
                 _build_carrying_pareto(problem, one) for one in borne.front if _is_verified(problem, one.mechanism)
@@ -176,29 +180,44 @@ class _Ranking:
     def _write_summary(self, ties: int) -> str:
         """Write the coverage of the search and the best train in one sentence."""
         problem, sifting = self._problem, self._sifting
-        covered = f"{format_count(sifting.candidates, 'combination')} of tooth numbers and members searched"
+        searched = compose("planetary_train-combinations-searched", count=sifting.candidates)
         if sifting.passed:
-            first = sifting.passed[0]
-            exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
-            alike = (
-                f"; {format_integer(ties)} trains have this error" if problem.rank_by == "error" and ties > 1 else ""
-            )
-            name = first.mechanism.arrangement.replace("_", " ")
-            return f"The {name} arrangement reaches {format_ratio(problem.ratio)} {exact}; {covered}{alike}."
+            return self._describe_best(sifting.passed[0], searched, ties)
         if self._idle and not sifting.candidates:
-            return "With these members a planet set does not affect the ratio; choose a simpler arrangement."
+            return compose("planetary_train-set-without-effect")
         if not self._sound:
-            return f"No train keeps the limits: {covered} ({sifting.format_reasons() or 'the limits permit none'})."
+            reasons = sifting.format_reasons() or compose("planetary_train-none-permitted")
+            return compose("planetary_train-none-within-limits", searched=searched, reasons=reasons)
         if not self._best:
-            direction = "the same" if problem.target > 0 else "the opposite"
-            return f"With these members no train turns input and output in {direction} direction; {covered}."
+            same = problem.target > 0
+            none = "planetary_train-none-turns-same" if same else "planetary_train-none-turns-opposite"
+            return compose(none, searched=searched)
         near = self._best[0]
-        teeth = ", ".join(f"{gear} {count}" for gear, count in near.teeth)
-        return (
-            f"No train is within the tolerance: {covered}. The nearest ratio is {float(near.ratio):.6g}, by "
-            f"{near.arrangement} ({teeth}; {' to '.join(near.roles[:2])}, "
-            f"{near.roles[2]} fixed), with an error of {100.0 * float(near.error):.4g} %."
+        return compose(
+            "planetary_train-none-within-tolerance",
+            searched=searched,
+            ratio=f"{float(near.ratio):.6g}",
+            arrangement=near.arrangement,
+            teeth=", ".join(f"{gear} {count}" for gear, count in near.teeth),
+            input=near.roles[0],
+            output=near.roles[1],
+            fixed=near.roles[2],
+            error=f"{100.0 * float(near.error):.4g}",
         )
+
+    def _describe_best(self, best: PlanetaryDesign, searched: str, ties: int) -> str:
+        """Describe the best train, and the number of equally exact ones if trains are ranked by error."""
+        problem = self._problem
+        if problem.rank_by == "error" and ties > 1:
+            searched = join_messages([searched, compose("planetary_train-ties", count=ties)], "; ")
+        known = {
+            "arrangement": best.mechanism.arrangement,
+            "ratio": format_ratio(problem.ratio),
+            "searched": searched,
+        }
+        if best.metrics.error == 0:
+            return compose("planetary_train-best-exact", **known)
+        return compose("planetary_train-best-nearest", error=f"{100.0 * best.metrics.error:.4g}", **known)
 
 
 def _build_mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:

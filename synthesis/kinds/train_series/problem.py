@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.kinds.train_series.units import Unit, Units, estimate_train_count, find_unit_contradictions
 from synthesis.model.gears.ratio_target import RatioTarget, parse_decimal, parse_target
 from synthesis.model.gears.request import ExactRatio
@@ -124,27 +125,27 @@ class TrainSeriesProblem(ProblemBase):
             for fault in find_unit_contradictions(unit, self.length_unit)
         ]
         if self.rank_by == "size" and self.tolerance is None:
-            faults.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
+            faults.append(Contradiction("/tolerance", compose("train_series-size-needs-tolerance")))
         return faults or self._check_extent()
 
     def _check_extent(self) -> list[Contradiction]:
         counts = [estimate_train_count(unit, self.length_unit) for unit in self.units]
         faults = []
         for k, (unit, count) in enumerate(zip(self.units, counts, strict=True)):
-            most, way = (
-                (MAX_ORDINARY_TRAINS, "make its stages separate units")
+            most, excess = (
+                (MAX_ORDINARY_TRAINS, "train_series-ordinary-unit-too-large")
                 if unit.type == "gear_train"
-                else (MAX_PLANETARY_TRAINS, "give an arrangement and its members")
+                else (MAX_PLANETARY_TRAINS, "train_series-planetary-unit-too-large")
             )
             if count > most:
-                detail = f"about {count:.0e} trains exceed the limit of {most:.0e} per unit"
-                faults.append(Contradiction(f"/units/{k}/teeth", f"{detail}; narrow the tooth numbers, or {way}"))
+                detail = compose(excess, trains=f"{count:.0e}", limit=f"{most:.0e}")
+                faults.append(Contradiction(f"/units/{k}/teeth", detail))
         # The search needs one split of the units with both sides within their limits.
         if not faults and not any(
             least <= MAX_SMALLER_HALF and most <= MAX_LARGER_HALF for least, most in map(sorted, _list_halves(counts))
         ):
-            detail = f"about {math.prod(counts):.0e} series are too many for the search"
-            faults.append(Contradiction("/units", f"{detail}; narrow the tooth numbers, or give members"))
+            detail = compose("train_series-too-many-series", series=f"{math.prod(counts):.0e}")
+            faults.append(Contradiction("/units", detail))
         return faults
 
 

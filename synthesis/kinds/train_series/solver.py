@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.solver import SEARCH_NOTE
 from synthesis.kinds.gear_train.statement.train import DEFAULT_TOLERANCE
@@ -20,7 +21,6 @@ from synthesis.kinds.train_series.problem import TrainSeriesProblem
 from synthesis.kinds.train_series.search import SearchResult, Series, SeriesSearch
 from synthesis.kinds.train_series.units import build_unit_problem
 from synthesis.kinds.train_series.verification import verify
-from synthesis.model.counting import format_count
 from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.ratio_target import format_ratio
 from synthesis.model.kind import Progress
@@ -48,12 +48,12 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
     # Equal units share one catalogue.
     listed: dict[int, Catalogue] = {}
     for k, first in enumerate(problem.first_equal_units):
-        progress(0.5 * k / len(problem.units), f"unit {k + 1}: tooth numbers")
+        progress(0.5 * k / len(problem.units), compose("train_series-listing-teeth", unit=k + 1))
         if first not in listed:
             listed[first] = build_catalogue(problem.units[first], problem.length_unit)
     catalogues = [listed[first] for first in problem.first_equal_units]
     search = SeriesSearch(catalogues, problem.first_equal_units, problem.target, problem.sign)
-    progress(0.5, f"{search.combinations:.3g} series")
+    progress(0.5, compose("train_series-searching", series=f"{search.combinations:.3g}"))
     tolerance = problem.exact_tolerance
     near = DEFAULT_TOLERANCE if tolerance is None else tolerance
     sifting = CandidateLog[TrainSeriesDesign](problem, undriven="gears")
@@ -74,14 +74,14 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
 
     while True:
         found = search.find_best(tolerance, near, wanted, problem.rank_by == "size")
-        progress(0.9, "verifying")
+        progress(0.9, compose("train_series-verifying"))
         sifting.verify_candidates(list_untried(found.best), verify_series, problem.max_designs)
         # Series that cannot be made leave places for others behind them.
         enough = len(sifting.passed) >= problem.max_designs
         if enough or len(found.best) < wanted or len(met) >= MAX_EXTRA_SERIES:
             break
         wanted *= 4
-    progress(1.0, "verified")
+    progress(1.0, compose("train_series-verified"))
     searched = _is_searched_in_steps(problem)
     least = None if found.nearest is None else abs(problem.target.compute_relative_error(abs(found.nearest.ratio)))
     return TrainSeriesResult(
@@ -92,8 +92,12 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
             ties=found.ties,
             least_error=least,
         ),
-        summary=_write_summary(problem, search, found, catalogues, sifting.passed)
-        + (f" {SEARCH_NOTE}" if searched else ""),
+        summary=join_messages(
+            [
+                _write_summary(problem, search, found, catalogues, sifting.passed),
+                compose(SEARCH_NOTE) if searched else "",
+            ]
+        ),
         pareto=[entry for one in found.front if (entry := _build_pareto(problem, search, catalogues, one)) is not None],
     )
 
@@ -137,29 +141,43 @@ def _write_summary(
     accepted: list[TrainSeriesDesign],
 ) -> str:
     """Write one or two sentences: the result, or the reason why there is none."""
-    covered = f"{format_count(search.combinations, 'series', 'series')} searched"
+    searched = compose("train_series-searched", count=search.combinations)
     if accepted:
-        first = accepted[0]
-        parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
-        ratio = first.mechanism.ratio.value
-        exact = (
-            f"is exactly {format_ratio(problem.ratio)}"
-            if first.metrics.error == 0.0
-            else f"is {ratio:.8g} instead of {format_ratio(problem.ratio)}, "
-            f"an error of {100.0 * first.metrics.error:.4g} %"
-        ).replace("-", "−")
-        alike = f"; {format_count(found.ties, 'series', 'series')} have this error" if found.ties > 1 else ""
-        return f"{parts} {exact}; {covered}{alike}."
+        if found.ties > 1:
+            searched = join_messages([searched, compose("train_series-ties", count=found.ties)], "; ")
+        return _describe_best(problem, accepted[0], searched)
     for k, catalogue in enumerate(catalogues, 1):
         if not len(catalogue.value):
-            return f"No such series exists: no train satisfies the constraints of unit {k}."
+            return compose("train_series-unit-without-trains", unit=k)
     if found.nearest is None:
-        direction = "the same" if problem.sign > 0 else "the opposite"
-        return f"No such series exists: none turns input and output in {direction} direction; {covered}."
+        none = "train_series-none-turns-same" if problem.sign > 0 else "train_series-none-turns-opposite"
+        return compose(none, searched=searched)
     if found.best:
-        return f"No series passed the verification; {covered}."
+        return compose("train_series-none-verified", searched=searched)
     error = abs(problem.target.compute_relative_error(abs(found.nearest.ratio)))
-    return (
-        f"No such series exists: the nearest has the ratio {float(found.nearest.ratio):.6g}, an error of "
-        f"{100.0 * error:.4g} %; {covered}."
+    return compose(
+        "train_series-nearest-too-far",
+        ratio=f"{float(found.nearest.ratio):.6g}",
+        error=f"{100.0 * error:.4g}",
+        searched=searched,
     )
+
+
+def _describe_best(problem: TrainSeriesProblem, best: TrainSeriesDesign, searched: str) -> str:
+    """Describe the best series in a sentence: the product of the ratios of its units, and its error."""
+    factors = [_write_minus(f"{unit.ratio.value:.6g}") for unit in best.mechanism.units]
+    product, ratio = join_messages(factors, " × "), _write_minus(format_ratio(problem.ratio))
+    if best.metrics.error == 0.0:
+        return compose("train_series-best-exact", product=product, ratio=ratio, searched=searched)
+    return compose(
+        "train_series-best-nearest",
+        product=product,
+        reached=_write_minus(f"{best.mechanism.ratio.value:.8g}"),
+        ratio=ratio,
+        error=_write_minus(f"{100.0 * best.metrics.error:.4g}"),
+        searched=searched,
+    )
+
+
+def _write_minus(number: str) -> str:
+    return number.replace("-", "−")

@@ -10,8 +10,9 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, create_model
+from pydantic import BeforeValidator, Discriminator, Field, Tag, create_model
 
+from kinematics.message import compose
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.statement.stages import RequestedStage
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
@@ -73,13 +74,16 @@ else:
         kind = statement.get("type") if isinstance(statement, dict) else getattr(statement, "type", None)
         return f"<{kind}>" if isinstance(kind, str) and kind in PROBLEM_TYPES else None
 
+    def _require_type(statement: object) -> object:
+        # A message of the discriminator would be composed once for all, and its translation could be forgotten.
+        if _get_tag(statement) is None:
+            raise ValueError(compose("train_series-unknown-type", types=", ".join(PROBLEM_TYPES)))
+        return statement
+
     Unit = Annotated[
         Annotated[PlanetaryUnit, Tag("<planetary_train>")] | Annotated[GearTrainUnit, Tag("<gear_train>")],
-        Discriminator(
-            _get_tag,
-            custom_error_type="unknown_unit",
-            custom_error_message=f"type must be given and be one of: {', '.join(PROBLEM_TYPES)}",
-        ),
+        Discriminator(_get_tag),
+        BeforeValidator(_require_type),
     ]
     """A unit of a series; the field ``type`` is its kind."""
 
@@ -104,13 +108,11 @@ def find_unit_contradictions(unit: Unit, length_unit: str) -> list[Contradiction
     """Return the contradictions of a unit, by its fields."""
     faults = build_unit_problem(unit, Fraction(1), length_unit).find_contradictions()
     if unit.type == "gear_train" and unit.hunting_tooth == "prefer":
-        detail = "a unit of a series has no trains of equal error to prefer from; choose any or require"
+        detail = compose("train_series-hunting-teeth-not-preferable")
         faults.append(Contradiction("/hunting_tooth", detail))
     if unit.type == "gear_train":
         faults += [
-            Contradiction(
-                f"/stages/{number}/type", f"all shafts of a series are parallel; those of a {stage.type} stage are not"
-            )
+            Contradiction(f"/stages/{number}/type", compose("train_series-shafts-not-parallel", type=stage.type))
             for number, stage in enumerate(unit.stages or [])
             if not stage.is_parallel
         ]

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Integers
+from kinematics.message import compose
 from synthesis.kinds.gear_train.search.candidates import (
     Candidates,
     Halves,
@@ -114,7 +115,7 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     few = not outcome.trains or (tolerance is None and len(outcome.trains) < wanted)
     if few and whole is not None and _is_within_reach(task.target, whole, 0.0):
         every = tuple(k for k, span in reach.items() if span is not None)
-        progress(0.5, "few trains are within the tolerance; searching for the nearest")
+        progress(0.5, compose("gear_train-searching-nearest"))
         anyhow = _search_counts(task, every, UNLIMITED_TOLERANCE, None, wanted, _ignore_progress)
         if tolerance is not None:
             nearest = anyhow.trains[0] if anyhow.trains else None
@@ -157,7 +158,10 @@ def _search_counts(
                     break
                 candidates.search(int(first), int(last), rule, shortlist)
                 share = (done + candidates.combinations * float(last) / candidates.steps) / work
-                progress(0.95 * share, f"{k} stages: {candidates.combinations:.3g} trains")
+                progress(
+                    0.95 * share,
+                    compose("gear_train-searching-stages", stages=k, trains=f"{candidates.combinations:.3g}"),
+                )
             done += candidates.combinations
         trains = [_decode_train(row) for row in shortlist.teeth[: shortlist.kept[0]]]
         kept = [train for train in trains if tolerance is None or task.target.is_within(train.ratio, tolerance)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from kinematics.message import compose
 from synthesis.kinds.gear_train.statement.ring_pairs import has_no_running_ring
 from synthesis.kinds.gear_train.statement.search_size import check_search_size
 from synthesis.kinds.gear_train.statement.stages import GEARS, RequestedStage, compute_sense
@@ -40,21 +41,21 @@ def _check_stages(train: GearTrainBase) -> list[Contradiction]:
     if not faults:
         faults += _find_impossible_gears(train, train.stages)
     if train.max_stages is not None:
-        detail = f"{len(train.stages)} stages are given one by one; omit max_stages"
+        detail = compose("gear_train-stages-and-max-stages", count=len(train.stages))
         faults.append(Contradiction("/max_stages", detail))
     if train.stock is not None:
-        detail = "the gears of a stock have no type; give driver and driven of the stages instead"
+        detail = compose("gear_train-stock-has-no-types")
         faults.append(Contradiction("/stock", detail))
     faults += _check_direction(train, train.stages)
     for number, stage in enumerate(train.stages):
         path = f"/stages/{number}/type"
         if train.reverted and not stage.is_parallel:
-            faults.append(Contradiction(path, f"the shafts of a {stage.type} stage are not parallel; omit reverted"))
+            faults.append(Contradiction(path, compose("gear_train-shafts-not-parallel", type=stage.type)))
         if train.is_fitted and stage.type not in FITTED_TYPES:
-            detail = f"the teeth of {stage.type} stages cannot be fitted; omit {', '.join(train.fitting_fields)}"
+            detail = compose("gear_train-teeth-not-fittable", type=stage.type, fields=", ".join(train.fitting_fields))
             faults.append(Contradiction(path, detail))
         if train.strength is not None and stage.type not in RATED_STAGE_TYPES:
-            detail = f"the strength of {stage.type} stages is not estimated; omit strength"
+            detail = compose("gear_train-strength-not-estimated", type=stage.type)
             faults.append(Contradiction(path, detail))
     if train.strength is not None and any(stage.type == "internal" for stage in train.stages):
         wrong = train.strength.find_ring_errors()
@@ -72,9 +73,9 @@ def _check_load(train: GearTrainBase, stages: list[RequestedStage]) -> list[Cont
         # The contact stress formula holds from one axial pitch of overlap on: face ≥ π m / sin β.
         least = max(math.pi / math.sin(math.radians(abs(stages[number].helix_angle or 90.0))) for number in helical)
         if train.strength.max_face_width < least:
-            detail = f"the contact stress of these helical teeth is only known for faces from {least:.4g} modules"
-            faults.append(Contradiction("/strength/max_face_width", f"{detail}, at which they overlap by one pitch"))
-    detail = "the strength determines the face; omit the face width, or omit strength"
+            detail = compose("gear_train-face-too-narrow-for-contact", least=f"{least:.4g}")
+            faults.append(Contradiction("/strength/max_face_width", detail))
+    detail = compose("gear_train-strength-determines-face")
     return faults + [
         Contradiction(f"/stages/{number}/face_width", detail)
         for number in helical
@@ -88,10 +89,9 @@ def _find_impossible_gears(train: GearTrainBase, stages: list[RequestedStage]) -
     for number, stage in enumerate(stages):
         path, pairs = f"/stages/{number}", stage.list_given_pairs()
         if stage.type == "bevel" and not any(stage.has_meeting_cones(*pair) for pair in pairs):
-            faults.append(Contradiction(f"{path}/shaft_angle", "these bevel gears have no cones at this angle"))
+            faults.append(Contradiction(f"{path}/shaft_angle", compose("gear_train-bevel-without-cones")))
         if stage.type == "internal" and has_no_running_ring(stage, math.radians(train.pressure_angle)):
-            detail = "the pinion does not run in the ring: their tips or fillets interfere"
-            faults.append(Contradiction(path, f"{detail}; give the ring more teeth, or the pinion fewer"))
+            faults.append(Contradiction(path, compose("gear_train-pinion-not-in-ring")))
     return faults
 
 
@@ -103,30 +103,22 @@ def _check_direction(train: GearTrainBase, stages: list[RequestedStage]) -> list
     # A negative ratio requests the direction if the direction field does not.
     field = "/ratio" if train.direction == "any" else "/direction"
     if not sense:
-        detail = "has no meaning for intersecting or crossed shafts: it depends on the side on which gears are placed"
-        return [Contradiction(field, f"a direction {detail}; give only the size of the ratio")]
-    turning = "in the same direction" if sense > 0 else "in opposite directions"
-    detail = f"with these stages input and output turn {turning}; use one internal stage more, or one less"
-    return [Contradiction(field, detail)]
+        return [Contradiction(field, compose("gear_train-direction-without-meaning"))]
+    turning = "gear_train-stages-turn-same" if sense > 0 else "gear_train-stages-turn-opposite"
+    return [Contradiction(field, compose(turning))]
 
 
 def _check_fields(train: GearTrainBase) -> list[Contradiction]:
     """Check for redundant or contradictory fields."""
     contradictions = []
     if train.direction == "same" and parse_target(train.ratio)[0] < 0:
-        contradictions.append(
-            Contradiction("/direction", "a negative ratio means opposite directions; omit the sign or the direction")
-        )
+        contradictions.append(Contradiction("/direction", compose("gear_train-negative-ratio-same-direction")))
     if train.module is not None and train.diametral_pitch is not None:
-        contradictions.append(
-            Contradiction("/diametral_pitch", "the module already determines the pitch; give only one of them")
-        )
+        contradictions.append(Contradiction("/diametral_pitch", compose("gear_train-module-and-pitch")))
     if train.stock is not None and train.teeth is not None:
-        contradictions.append(
-            Contradiction("/stock", "the stock already determines the tooth numbers; omit teeth or stock")
-        )
+        contradictions.append(Contradiction("/stock", compose("gear_train-stock-and-teeth")))
     if train.reverted and train.most_stages < 2:
-        contradictions.append(Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages"))
+        contradictions.append(Contradiction("/reverted", compose("gear_train-reverted-single-stage")))
     return contradictions
 
 
@@ -137,8 +129,12 @@ def _check_lists(train: GearTrainBase) -> list[Contradiction]:
         contradictions.append(
             Contradiction(
                 "/teeth",
-                f"expected {2 * train.most_stages} ranges, driver and driven gear of {train.most_stages} stages, "
-                f"got {len(train.teeth)}",
+                compose(
+                    "gear_train-range-count-wrong",
+                    ranges=2 * train.most_stages,
+                    stages=train.most_stages,
+                    given=len(train.teeth),
+                ),
             )
         )
     elif isinstance(train.teeth, list) and train.stages is not None:
@@ -146,17 +142,16 @@ def _check_lists(train: GearTrainBase) -> list[Contradiction]:
     for place, one in enumerate(train.ranges):
         if one.min is None and _find_fewest_teeth(train, place) > one.max:
             path = f"/teeth/{place}/max" if isinstance(train.teeth, list) else "/teeth/max"
-            detail = f"below {_find_fewest_teeth(train, place)}, the fewest teeth without undercut; give min as well"
+            detail = compose("gear_train-max-undercut", least=_find_fewest_teeth(train, place))
             contradictions.append(Contradiction(path, detail))
     if isinstance(train.module, list):
         if len(set(train.module)) < len(train.module) and train.reverted:
-            contradictions.append(Contradiction("/module", "lists a module twice; each is a choice for every stage"))
+            contradictions.append(Contradiction("/module", compose("gear_train-stage-module-repeats")))
         elif max(train.pitches()) > MAX_PITCH_MULTIPLE:
-            contradictions.append(Contradiction("/module", "the modules have no common measure; round them"))
+            contradictions.append(Contradiction("/module", compose("gear_train-modules-incommensurable")))
         elif not train.reverted and len(train.module) != train.most_stages:
-            contradictions.append(
-                Contradiction("/module", f"expected the modules of {train.most_stages} stages, got {len(train.module)}")
-            )
+            detail = compose("gear_train-module-count-wrong", stages=train.most_stages, given=len(train.module))
+            contradictions.append(Contradiction("/module", detail))
     return contradictions
 
 
@@ -169,7 +164,7 @@ def _check_places(train: GearTrainBase, ranges: list[TeethRange], stages: list[R
         if limits is None:
             continue
         if not ((one.min or 0) <= limits[0] and limits[1] <= one.max):
-            detail = f"does not contain the {name} gear that stage {place // 2 + 1} gives; omit one of them"
+            detail = compose("gear_train-range-excludes-gear", gear=name, stage=place // 2 + 1)
             faults.append(Contradiction(f"/teeth/{place}", detail))
     return faults
 
@@ -190,17 +185,17 @@ def _check_fit(train: GearTrainBase) -> list[Contradiction]:
     if train.modules is not None:
         for name, pitch in (("module", train.module), ("diametral_pitch", train.diametral_pitch)):
             if pitch is not None:
-                contradictions.append(Contradiction("/modules", f"omit {name}, or omit modules"))
+                contradictions.append(Contradiction("/modules", compose("gear_train-modules-and-pitch", field=name)))
         if len(set(train.modules)) < len(train.modules):
-            contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
+            contradictions.append(Contradiction("/modules", compose("gear_train-modules-repeat")))
     if isinstance(train.centre_distance, list):
         if train.reverted:
-            contradictions.append(
-                Contradiction("/centre_distance", "a reverted train has one distance for all stages; give a number")
-            )
+            contradictions.append(Contradiction("/centre_distance", compose("gear_train-reverted-distance-list")))
         elif len(train.centre_distance) != train.most_stages:
-            expected = f"expected the distances of {train.most_stages} stages, got {len(train.centre_distance)}"
-            contradictions.append(Contradiction("/centre_distance", expected))
+            detail = compose(
+                "gear_train-distance-count-wrong", stages=train.most_stages, given=len(train.centre_distance)
+            )
+            contradictions.append(Contradiction("/centre_distance", detail))
     return contradictions
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 
 import numpy as np
 
+from kinematics.message import compose
 from synthesis.kinds.gear_train.statement.stages import GEARS, RequestedStage
 from synthesis.kinds.gear_train.statement.train import GearTrainBase
 from synthesis.model.problem import Contradiction
@@ -23,9 +24,10 @@ MAX_COAXIAL = 3_000_000_000
 MAX_FITTED = 500
 """Maximum number of tooth numbers whose pairs are fitted to a range of distances; some 10⁵ pairs."""
 
-HALVES_LIMIT = MAX_HALVES, "choices of drivers or driven gears"
-COAXIAL_LIMIT = MAX_COAXIAL, "combinations of meshes"
-"""Limits with their units: for trains whose stages have distances of their own, and for coaxial ones."""
+HALVES_LIMIT = MAX_HALVES, "gear_train-too-many-gear-choices"
+COAXIAL_LIMIT = MAX_COAXIAL, "gear_train-too-many-mesh-combinations"
+"""Limits with the message that a search exceeds them: for trains whose stages have distances of their own, and for
+coaxial ones."""
 
 
 def check_search_size(train: GearTrainBase) -> list[Contradiction]:
@@ -37,24 +39,23 @@ def check_search_size(train: GearTrainBase) -> list[Contradiction]:
     else:
         widths = [high - low + 1 for low, high in train.list_position_ranges()]
     if train.shares_distance and max(widths) > MAX_FITTED:
-        detail = f"{max(widths)} tooth numbers are given; at most {MAX_FITTED} can be fitted in pairs"
-        return [Contradiction(field, f"{detail} to an open distance; narrow the range or give the distance")]
-    covered, most, what = _estimate_extent(train, widths)
+        return [Contradiction(field, compose("gear_train-too-many-fitted", count=max(widths), limit=MAX_FITTED))]
+    covered, most, excess = _estimate_extent(train, widths)
     if covered <= most:
         return []
-    detail = f"about {float(covered):.0e} {what} in {k} stages exceed the limit of {most:.0e}"
-    return [Contradiction(field, f"{detail}; narrow the tooth numbers or allow fewer stages")]
+    detail = compose(excess, covered=f"{float(covered):.0e}", stages=k, limit=f"{most:.0e}")
+    return [Contradiction(field, detail)]
 
 
 def _estimate_extent(train: GearTrainBase, widths: list[int]) -> tuple[int, int, str]:
-    """Estimate the size of a search; return it with its maximum and its unit.
+    """Estimate the size of a search; return it with its maximum and the id of the message that it is exceeded.
 
     ``widths`` are the numbers of tooth numbers of driver and driven gear of each stage.
     """
     k = train.most_stages
     if train.stages is not None and not _has_like_stages(train, train.stages):
-        most, what = COAXIAL_LIMIT if train.reverted else HALVES_LIMIT
-        return _count_unlike_stages(train, widths), most, what
+        most, excess = COAXIAL_LIMIT if train.reverted else HALVES_LIMIT
+        return _count_unlike_stages(train, widths), most, excess
     if train.reverted:
         meshes = max(widths) * len(train.list_exact_modules())
         if not train.is_fitted and train.stages is None and not isinstance(train.teeth, list):

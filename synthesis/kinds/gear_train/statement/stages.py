@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from kinematics.gear.train import CROSSED_KINDS, StageKind
+from kinematics.message import compose
 from synthesis.model.gears.request import MAX_TEETH, MIN_TEETH
 from synthesis.model.gears.stages import FIELD_STAGE_TYPES, MAX_THREADS, StageType
 from synthesis.model.problem import Count, Range
@@ -89,22 +90,21 @@ class RequestedStage(StageType):
         """Return contradictions, by the path below the stage."""
         faults = self.find_type_errors()
         if self.ring is not None and self.type != "internal":
-            faults.append(("/ring", "only an internal stage has a ring; omit it"))
+            faults.append(("/ring", compose("gear_train-ring-in-other-stage")))
         if self.type == "internal":
             faults += self._check_ring()
         for name, least, most in self._list_bounds():
             limits = self.limits(name)
             if limits is None:
                 if not self.is_parallel:
-                    faults.append((f"/{name}", f"required for a {self.type} stage"))
+                    faults.append((f"/{name}", compose("gear_train-required-for-type", type=self.type)))
                 continue
             if limits[0] < least or limits[1] > most:
-                of = "threads" if most == MAX_THREADS else "teeth"
-                faults.append((f"/{name}", f"expected {least} to {most} {of}"))
+                outside = "gear_train-threads-out-of-range" if most == MAX_THREADS else "gear_train-teeth-out-of-range"
+                faults.append((f"/{name}", compose(outside, least=least, most=most)))
         if not self.is_parallel and self._count_pairs() > MAX_GIVEN_PAIRS:
-            faults.append(
-                ("/driven", f"more than {MAX_GIVEN_PAIRS} pairs of gears for a {self.type} stage; narrow the ranges")
-            )
+            detail = compose("gear_train-too-many-given-pairs", limit=MAX_GIVEN_PAIRS, type=self.type)
+            faults.append(("/driven", detail))
         return faults
 
     def _check_ring(self) -> list[tuple[str, str]]:
@@ -114,14 +114,7 @@ class RequestedStage(StageType):
             pinion, ring = ring, pinion
         if pinion is None or ring is None or ring[1] > pinion[0]:
             return []
-        which = self.ring or "driven"
-        return [
-            (
-                "",
-                f"the {which} gear is the ring and needs more teeth than its pinion; set `ring` if it is the "
-                "other gear",
-            )
-        ]
+        return [("", compose("gear_train-ring-too-small", gear=self.ring or "driven"))]
 
     def list_given_pairs(self) -> list[tuple[int, int]]:
         """List the pairs of driver and driven gear, if both are given here and they are few; otherwise none."""

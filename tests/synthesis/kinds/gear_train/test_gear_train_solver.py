@@ -141,7 +141,7 @@ def test_reverted_with_modules_of_its_stages() -> None:
     [
         ({"ratio": 1e6, "max_stages": 3}, "out of reach"),
         ({"ratio": 1000, "max_stages": 3, "max_stage_ratio": 5.0}, "0.008 to 125"),
-        ({"ratio": 3, "stock": [20]}, "stock of 1 gears is too small"),
+        ({"ratio": 3, "stock": [20]}, "stock of 1 gear is too small"),
         ({"ratio": 3, "direction": "same", "max_stages": 1, "stock": [20, 60]}, "too small"),
         ({"ratio": 3, "stock": [20, 61], "tolerance": 0.001}, "20:61, has a relative error of 0.0167"),
         ({"ratio": -6, "max_stages": 2, "reverted": True}, "allow three stages"),
