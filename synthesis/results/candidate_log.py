@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Generic, TypeVar
 
-from kinematics.message import compose
 from synthesis.model.answer import Search
 from synthesis.model.counting import format_integer
 from synthesis.model.kind import Progress
@@ -221,13 +220,11 @@ def report_candidates(
 ) -> Iterator[Candidate]:
     """Yield candidates one by one and report progress between the shares of ``span`` before each.
 
-    ``message`` is the id of a message, or a text. It may contain ``{done}``, ``{next}`` and ``{all}``: the number of
-    candidates before this one, including it, and in total.
+    ``message`` may contain ``{done}``, ``{next}`` and ``{all}``: the number of candidates before this one, including
+    it, and in total.
     """
     begin, end = span
     count = len(candidates)
     for n, candidate in enumerate(candidates):
-        numbers = {"done": n, "next": n + 1, "all": count}
-        text = message.format(**numbers) if " " in message else compose(message, **numbers)
-        progress(begin + (end - begin) * n / count, text)
+        progress(begin + (end - begin) * n / count, message.format(done=n, next=n + 1, all=count))
         yield candidate

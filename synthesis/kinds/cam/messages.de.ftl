@@ -115,8 +115,8 @@ cam-is-near-minimum =
 cam-jerk-unbounded = Die Beschleunigung springt; der Ruck hat daher keinen endlichen Spitzenwert, und es wird keiner angegeben.
 cam-acceleration-for-instant = Ohne Grenze des Rucks wird eine Beschleunigung womöglich nur für einen Augenblick erreicht; `limits.jerk` setzen.
 # $reason ist eine der folgenden Meldungen.
-cam-none-exists = Es gibt keine: { $reason }.
-cam-none-found = Keine gefunden: { $reason }.
+cam-none-exists = Es gibt keine Kurvenscheibe: { $reason }.
+cam-none-found = Keine Kurvenscheibe gefunden: { $reason }.
 
 ## Gründe, warum es keine Kurvenscheibe gibt
 

@@ -69,7 +69,7 @@ function-improving-sixbars = die besten von { $count } Sechsgelenken der Art { $
 function-paths-followed = { $done } von { $count } Wegen verfolgt
 function-paths-to-nine-followed = { $done } von { $count } Wegen zu neun der Wertepaare verfolgt
 function-verifying-best-sixbars = die besten von { $count } Sechsgelenken werden geprüft
-function-verifying-sixbar = Sechsgelenk { $next } von { $all } wird geprüft
+function-progress-sixbars = Sechsgelenk { $next } von { $all } wird geprüft
 function-verifying = Prüfung läuft
 function-verified = geprüft
 
@@ -80,23 +80,32 @@ function-values-read-as-angles = Die Werte wurden als Winkel zur Gestellgeraden 
 function-zeros-left-open = Kein Getriebe mit den Werten als Winkeln zur Gestellgeraden erfüllt alle Bedingungen. Mit offenen Nullstellungen:
 # $unit ist ein Gradzeichen oder, mit einem Leerzeichen davor, eine Längeneinheit.
 function-least-maximum =
-    Kleinster gefundener größter Strukturfehler: { $maximum }{ $unit } ({ $extremes ->
+    Der beste gefundene Entwurf hat einen größten Strukturfehler von { $maximum }{ $unit } ({ $extremes ->
         [one] { $extremes } Extremwert
        *[other] { $extremes } Extremwerte mit wechselndem Vorzeichen
     }). { $improved } von { $count ->
         [one] { $count } Startwert
        *[other] { $count } Startwerten
-    } wurden optimiert; es kann ein besseres Getriebe geben.
+    } { $improved ->
+        [one] wurde
+       *[other] wurden
+    } optimiert; es kann ein besseres Getriebe geben.
 function-least-rms =
-    Kleinster gefundener mittlerer Strukturfehler (RMS): { $rms }{ $unit } (Maximum { $maximum }{ $unit }). { $improved } von { $count ->
+    Der beste gefundene Entwurf hat einen mittleren Strukturfehler (RMS) von { $rms }{ $unit } (Maximum { $maximum }{ $unit }). { $improved } von { $count ->
         [one] { $count } Startwert
        *[other] { $count } Startwerten
-    } wurden optimiert; es kann ein besseres Getriebe geben.
+    } { $improved ->
+        [one] wurde
+       *[other] wurden
+    } optimiert; es kann ein besseres Getriebe geben.
 function-no-start-passes =
     Kein Entwurf gefunden: { $improved } von { $count ->
         [one] { $count } Startwert
        *[other] { $count } Startwerten
-    } wurden optimiert, aber kein Ergebnis erfüllt alle Bedingungen.
+    } { $improved ->
+        [one] wurde
+       *[other] wurden
+    } optimiert, aber kein Ergebnis erfüllt alle Bedingungen.
 function-real-linkages-pass =
     { $passed } von { $count ->
         [one] { $count } reellen Getriebe
@@ -116,7 +125,7 @@ function-designs-among-candidates =
     } unter { $count } Kandidaten gefunden.
 # $computed von $count Lösungen wurden gefunden; $accepted der $real reellen erfüllen die Bedingungen.
 function-watts-computed =
-    { $computed } von { $count } reellen und komplexen Lösungen nach Watt II für die neun Wertepaare wurden berechnet; { $real ->
+    { $computed } von { $count } reellen und komplexen Lösungen für Sechsgelenke nach Watt II durch die neun Wertepaare wurden berechnet; { $real ->
         [one] { $real } ist
        *[other] { $real } sind
     } reell, und { $accepted } davon { $accepted ->
@@ -125,19 +134,19 @@ function-watts-computed =
     } alle Bedingungen.
 # $pairs ist »nine«, wenn es neun Wertepaare gibt, und »more«, wenn neun davon ausgewählt wurden. $met kann 0 sein.
 function-watts-meet-pairs =
-    Alle { $count } reellen und komplexen Lösungen nach Watt II für { $pairs ->
+    Alle { $count } reellen und komplexen Lösungen für Sechsgelenke nach Watt II durch { $pairs ->
         [nine] die neun Wertepaare
        *[more] neun der Wertepaare
     } wurden berechnet; { $met ->
         [0] keine davon erfüllt
         [one] { $met } davon erfüllt
        *[other] { $met } davon erfüllen
-    } alle Wertepaare auf ein Millionstel Grad in einer Zusammensetzung.
+    } alle Wertepaare auf ein Millionstel Grad in einer Einbaulage.
 function-many-watts-meet-pairs =
-    Alle { $count } reellen und komplexen Lösungen nach Watt II für { $pairs ->
+    Alle { $count } reellen und komplexen Lösungen für Sechsgelenke nach Watt II durch { $pairs ->
         [nine] die neun Wertepaare
        *[more] neun der Wertepaare
-    } wurden berechnet; mindestens { $met } davon erfüllen alle Wertepaare auf ein Millionstel Grad in einer Zusammensetzung.
+    } wurden berechnet; mindestens { $met } davon erfüllen alle Wertepaare auf ein Millionstel Grad in einer Einbaulage.
 function-no-sixbar-passes =
     { $sampled ->
         [one] { $sampled } Sechsgelenk wurde
@@ -156,7 +165,7 @@ function-sixbar-with-least-rms =
     { $sampled ->
         [one] { $sampled } Sechsgelenk wurde
        *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen. Kleinster gefundener mittlerer Strukturfehler (RMS): { $rms }° (Maximum { $maximum }°), mit einem Sechsgelenk nach { $type ->
+    } zufällig gezogen. Der beste gefundene Entwurf hat einen mittleren Strukturfehler (RMS) von { $rms }° (Maximum { $maximum }°); es ist ein Sechsgelenk nach { $type ->
         [watt_2] Watt II
         [stephenson_2] Stephenson II
        *[stephenson_3] Stephenson III
@@ -165,7 +174,7 @@ function-sixbar-with-least-maximum =
     { $sampled ->
         [one] { $sampled } Sechsgelenk wurde
        *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen. Kleinster gefundener größter Strukturfehler: { $maximum }°, mit einem Sechsgelenk nach { $type ->
+    } zufällig gezogen. Der beste gefundene Entwurf hat einen größten Strukturfehler von { $maximum }°; es ist ein Sechsgelenk nach { $type ->
         [watt_2] Watt II
         [stephenson_2] Stephenson II
        *[stephenson_3] Stephenson III

@@ -72,7 +72,7 @@ function-improving-sixbars = improving the best of { $count } sixbars of type { 
 function-paths-followed = { $done } of { $count } paths followed
 function-paths-to-nine-followed = { $done } of { $count } paths to nine of the pairs followed
 function-verifying-best-sixbars = verifying the best of { $count } sixbars
-function-verifying-sixbar = verifying { $next } of { $all } sixbars
+function-progress-sixbars = verifying { $next } of { $all } sixbars
 function-verifying = verifying
 function-verified = verified
 
@@ -89,17 +89,26 @@ function-least-maximum =
     }). { $improved } of { $count ->
         [one] { $count } start
        *[other] { $count } starts
-    } were optimised; a better linkage may exist.
+    } { $improved ->
+        [one] was
+       *[other] were
+    } optimised; a better linkage may exist.
 function-least-rms =
     Smallest root-mean-square structural error found: { $rms }{ $unit } (maximum { $maximum }{ $unit }). { $improved } of { $count ->
         [one] { $count } start
        *[other] { $count } starts
-    } were optimised; a better linkage may exist.
+    } { $improved ->
+        [one] was
+       *[other] were
+    } optimised; a better linkage may exist.
 function-no-start-passes =
     No design found: { $improved } of { $count ->
         [one] { $count } start
        *[other] { $count } starts
-    } were optimised, but none satisfies all constraints.
+    } { $improved ->
+        [one] was
+       *[other] were
+    } optimised, but none satisfies all constraints.
 function-real-linkages-pass =
     { $passed } of { $count ->
         [one] { $count } real linkage

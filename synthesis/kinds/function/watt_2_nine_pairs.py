@@ -101,7 +101,8 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
             return None  # at a toggle no position can be computed
 
     sifting.verify_candidates(
-        report_candidates(kept, progress, (CONTINUATION_SHARE, 1.0), "function-verifying-sixbar"), verify_sixbar
+        report_candidates(kept, progress, (CONTINUATION_SHARE, 1.0), "function-progress-sixbars"),
+        verify_sixbar,
     )
     progress(1.0, compose("function-verified"))
     # Rejections by size or placement could be avoided by other placements, which were not searched.
