@@ -261,8 +261,8 @@ class Contour:
         roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
         if roller and 0.0 < sizes[2] < MIN_ROLLER_CHORDS * self.chords.max():
             least = f"{MIN_ROLLER_CHORDS * self.chords.max()}"
-            radius = float(sizes[2])
-            raise DimensionError("kinematics-roller-radius", "kinematics-zero-or-at-least", radius, least=least)
+            given = float(sizes[2])
+            raise DimensionError("kinematics-roller-radius", "kinematics-zero-or-at-least", given, least=least)
         values: Real = np.empty(theta.size)
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
