@@ -37,9 +37,9 @@ class BarrelCam:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.radius) and self.radius > 0.0):
-            raise DimensionError("cylinder radius", "positive", self.radius)
+            raise DimensionError("kinematics-cylinder-radius", "kinematics-positive", self.radius)
         if not (math.isfinite(self.roller_radius) and self.roller_radius >= 0.0):
-            raise DimensionError("roller radius", "at least 0", self.roller_radius)
+            raise DimensionError("kinematics-roller-radius", "kinematics-at-least", self.roller_radius, least=0)
 
     def pressure_angle(self, angle: ArrayLike) -> Real:
         """Return the pressure angle in radians, positive in a rise."""

@@ -73,7 +73,7 @@ class SpecifiedContour:
                 # A flank must lie at its distance at both ends, and the next normal must be its own.
                 off = max(np.abs(ends).max(), abs(turn) * self.base_radius)
             if not off <= TANGENCY_TOLERANCE * self.base_radius:
-                raise DimensionError("contour", "of parts that are tangent to their neighbours", (k, float(off)))
+                raise DimensionError("contour", "kinematics-tangent-parts", (k, float(off)))
 
     @property
     def joints(self) -> Complex:
@@ -121,7 +121,12 @@ class SpecifiedContour:
         own = follower.base_radius if isinstance(follower, TranslatingFlat) else follower.prime_radius
         roller = 0.0 if isinstance(follower, TranslatingFlat) else follower.roller_radius
         if abs(own - self.base_radius - roller) > TANGENCY_TOLERANCE * self.base_radius:
-            raise DimensionError("prime or base radius", f"{self.base_radius + roller} for this contour", own)
+            raise DimensionError(
+                "kinematics-prime-or-base-radius",
+                "kinematics-radius-of-contour",
+                own,
+                radius=f"{self.base_radius + roller}",
+            )
         theta = np.asarray(angle, dtype=np.float64)
         starts, parts = self._find_starts(follower, rotation)
         # The parts begin in cyclic order; sorted by angle, the last one wraps around to angle 0 (index −1).
@@ -142,13 +147,18 @@ class SpecifiedContour:
         normals = np.array([part.start for part in contour.parts])
         if isinstance(follower, TranslatingFlat):
             if any(isinstance(part, Arc) and part.radius <= 0.0 for part in self.parts):
-                raise DimensionError("contour under a flat face", "nowhere hollow", self.parts)
+                raise DimensionError("kinematics-contour-under-flat-face", "kinematics-nowhere-hollow", self.parts)
             arcs = [k for k, part in enumerate(contour.parts) if isinstance(part, Arc)]
             # A flat face stands at the angle of the contour's normal, so it passes a flank in an instant.
             return normals[arcs], tuple(contour.parts[k] for k in arcs)
         hollows = [-part.radius for part in self.parts if isinstance(part, Arc) and part.radius < 0.0]
         if hollows and follower.roller_radius >= min(hollows):
-            raise DimensionError("roller radius", f"less than the hollow's, {min(hollows)}", follower.roller_radius)
+            raise DimensionError(
+                "kinematics-roller-radius",
+                "kinematics-less-than-hollow-radius",
+                follower.roller_radius,
+                radius=f"{min(hollows)}",
+            )
         centre = contour.joints + follower.roller_radius * np.exp(1j * normals)
         # The roller's centre reaches a joint's offset point when this lies on the slide, e off the centre.
         return np.angle(centre) - np.arcsin(follower.offset / np.abs(centre)), contour.parts
@@ -182,7 +192,7 @@ class SpecifiedContour:
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
             if isinstance(following, Flank):
-                raise DimensionError("contour", "without two flanks in a row, which have no common tangent", k)
+                raise DimensionError("contour", "kinematics-no-flanks-in-row", k)
             part = following
         return complex(part.centre + part.radius * np.exp(1j * following.start))
 
@@ -197,7 +207,7 @@ class SpecifiedContour:
 def build_eccentric_circle(radius: float, eccentricity: float) -> SpecifiedContour:
     """Build a circle that turns about a point off its centre; the base circle is inscribed about that point."""
     if not (math.isfinite(radius) and 0.0 <= eccentricity < radius):
-        raise DimensionError("eccentricity", f"at least 0 and less than the radius {radius}", eccentricity)
+        raise DimensionError("eccentricity", "kinematics-within-radius", eccentricity, radius=f"{radius}")
     return SpecifiedContour(radius - eccentricity, (Arc(complex(eccentricity), radius, 0.0),))
 
 
@@ -231,7 +241,7 @@ def build_circular_arc_cam(
     closes = abs(to_base - to_nose) < nose_distance < to_base + to_nose
     convex = flank_radius > max(base_radius, nose_radius)
     if not (math.isfinite(flank_radius) and closes and (convex or flank_radius < 0.0)):
-        raise DimensionError("flank radius", "such that the flank is tangent to base circle and nose", flank_radius)
+        raise DimensionError("kinematics-flank-radius", "kinematics-flank-is-tangent", flank_radius)
     # Angle at the cam's centre between the nose and the flank's centre.
     cosine = (to_base**2 + nose_distance**2 - to_nose**2) / (2.0 * to_base * nose_distance)
     angle = math.acos(cosine)
@@ -258,7 +268,7 @@ def compute_flank_radius(base_radius: float, nose_radius: float, nose_distance: 
     """
     _check_nose(base_radius, nose_radius, nose_distance)
     if not 0.0 < half_action < math.pi:
-        raise DimensionError("half action angle", "between 0 and π", half_action)
+        raise DimensionError("kinematics-half-action-angle", "kinematics-between-0-and-pi", half_action)
     # Law of cosines in the triangle of base, nose and flank centres, solved for the flank's radius.
     along = nose_distance * math.cos(half_action)
     top = base_radius**2 + nose_distance**2 - nose_radius**2 - 2.0 * base_radius * along
@@ -268,12 +278,12 @@ def compute_flank_radius(base_radius: float, nose_radius: float, nose_distance: 
 
 def _check_nose(base_radius: float, nose_radius: float, nose_distance: float) -> None:
     if not (math.isfinite(base_radius) and base_radius > 0.0):
-        raise DimensionError("base radius", "positive", base_radius)
+        raise DimensionError("kinematics-base-radius", "kinematics-positive", base_radius)
     if not (math.isfinite(nose_radius) and nose_radius > 0.0):
-        raise DimensionError("nose radius", "positive", nose_radius)
+        raise DimensionError("kinematics-nose-radius", "kinematics-positive", nose_radius)
     if not (math.isfinite(nose_distance) and nose_distance > abs(base_radius - nose_radius)):
-        expected = f"more than {abs(base_radius - nose_radius)}, so that the nose is outside the base circle"
-        raise DimensionError("distance of the nose's centre", expected, nose_distance)
+        least = f"{abs(base_radius - nose_radius)}"
+        raise DimensionError("kinematics-nose-distance", "kinematics-nose-outside-base", nose_distance, least=least)
 
 
 def _evaluate_part(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:

@@ -65,13 +65,13 @@ class FollowerLoad:
         for name in ("mass", "spring_rate", "preload", "damping"):
             value = getattr(self, name)
             if not (math.isfinite(value) and (value > 0.0 if name == "mass" else value >= 0.0)):
-                expected = "positive" if name == "mass" else "at least 0"
-                raise DimensionError(name.replace("_", " "), expected, value)
+                expected = "kinematics-positive" if name == "mass" else "kinematics-at-least"
+                raise DimensionError(name, expected, value, least=0)
 
     def with_damping_ratio(self, ratio: float) -> FollowerLoad:
         """Return the load with the damping c = 2 ζ √(k m) of a ratio ζ."""
         if not (math.isfinite(ratio) and ratio >= 0.0):
-            raise DimensionError("damping ratio", "at least 0", ratio)
+            raise DimensionError("kinematics-damping-ratio", "kinematics-at-least", ratio, least=0)
         return replace(self, damping=2.0 * ratio * math.sqrt(self.spring_rate * self.mass))
 
     @property
@@ -124,9 +124,9 @@ class RunningCam:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and self.speed > 0.0):
-            raise DimensionError("speed", "positive", self.speed)
+            raise DimensionError("speed", "kinematics-positive", self.speed)
         if not math.isfinite(self.phase):
-            raise DimensionError("phase", "finite", self.phase)
+            raise DimensionError("phase", "kinematics-finite", self.phase)
 
     def force(self, angle: ArrayLike) -> Real:
         """Return F along the follower's motion at cam angles; the normal force is F/cos(pressure angle)."""
@@ -249,7 +249,7 @@ class Camshaft:
 
     def __post_init__(self) -> None:
         if len({cam.speed for cam in self.cams}) != 1:
-            raise DimensionError("speeds of the cams", "one and the same", [cam.speed for cam in self.cams])
+            raise DimensionError("kinematics-cam-speeds", "kinematics-all-equal", [cam.speed for cam in self.cams])
 
     @property
     def speed(self) -> float:
@@ -297,7 +297,7 @@ class Camshaft:
     def compute_flywheel_inertia(self, fluctuation: float) -> float:
         """Compute the inertia that keeps (ω_max − ω_min)/ω at a coefficient k: E/(k ω²) (Norton eq. 11.22)."""
         if not (math.isfinite(fluctuation) and fluctuation > 0.0):
-            raise DimensionError("coefficient of fluctuation", "positive", fluctuation)
+            raise DimensionError("kinematics-coefficient-of-fluctuation", "kinematics-positive", fluctuation)
         return self.energy_fluctuation / (fluctuation * self.speed**2)
 
     def _integrate_torque(self, at: Real) -> Real:

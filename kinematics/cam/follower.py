@@ -66,7 +66,9 @@ class TranslatingRoller:
     def __post_init__(self) -> None:
         _check_roller(self.prime_radius, self.roller_radius)
         if not abs(self.offset) < self.prime_radius:
-            raise DimensionError("offset", f"less than the prime radius {self.prime_radius}", self.offset)
+            raise DimensionError(
+                "offset", "kinematics-less-than-prime-radius", self.offset, radius=f"{self.prime_radius}"
+            )
 
     @property
     def height(self) -> float:
@@ -127,10 +129,12 @@ class OscillatingRoller:
         _check_pivot(self.pivot_distance, self.sense)
         least, most = abs(self.pivot_distance - self.arm), self.pivot_distance + self.arm
         if not (math.isfinite(self.arm) and self.arm > 0.0):
-            raise DimensionError("arm", "positive", self.arm)
+            raise DimensionError("arm", "kinematics-positive", self.arm)
         if not least < self.prime_radius < most:
-            expected = f"between {least} and {most}, so that arm and pivot distance close the triangle"
-            raise DimensionError("prime radius", expected, self.prime_radius)
+            expected = "kinematics-arm-closes-triangle"
+            raise DimensionError(
+                "kinematics-prime-radius", expected, self.prime_radius, least=f"{least}", most=f"{most}"
+            )
 
     @property
     def start_angle(self) -> float:
@@ -194,7 +198,7 @@ class TranslatingFlat:
     def __post_init__(self) -> None:
         _check_base(self.base_radius)
         if not math.isfinite(self.offset):
-            raise DimensionError("offset", "finite", self.offset)
+            raise DimensionError("offset", "kinematics-finite", self.offset)
 
     @property
     def span(self) -> tuple[float, float]:
@@ -237,8 +241,8 @@ class OscillatingFlat:
         _check_pivot(self.pivot_distance, self.sense)
         reach = self.base_radius + self.face_offset
         if not 0.0 <= reach < self.pivot_distance:
-            expected = f"such that with the base radius it is at least 0 and less than {self.pivot_distance}"
-            raise DimensionError("face offset", expected, self.face_offset)
+            most = f"{self.pivot_distance}"
+            raise DimensionError("kinematics-face-offset", "kinematics-face-within-pivot", self.face_offset, most=most)
 
     @property
     def start_angle(self) -> float:
@@ -285,18 +289,20 @@ def _compute_curvature(trace: Trace) -> Real:
 
 def _check_roller(prime_radius: float, roller_radius: float) -> None:
     if not (math.isfinite(roller_radius) and roller_radius >= 0.0):
-        raise DimensionError("roller radius", "at least 0", roller_radius)
+        raise DimensionError("kinematics-roller-radius", "kinematics-at-least", roller_radius, least=0)
     if not (math.isfinite(prime_radius) and prime_radius > roller_radius):
-        raise DimensionError("prime radius", f"more than the roller radius {roller_radius}", prime_radius)
+        raise DimensionError(
+            "kinematics-prime-radius", "kinematics-more-than-roller", prime_radius, radius=f"{roller_radius}"
+        )
 
 
 def _check_base(base_radius: float) -> None:
     if not (math.isfinite(base_radius) and base_radius > 0.0):
-        raise DimensionError("base radius", "positive", base_radius)
+        raise DimensionError("kinematics-base-radius", "kinematics-positive", base_radius)
 
 
 def _check_pivot(pivot_distance: float, sense: int) -> None:
     if not (math.isfinite(pivot_distance) and pivot_distance > 0.0):
-        raise DimensionError("pivot distance", "positive", pivot_distance)
+        raise DimensionError("kinematics-pivot-distance", "kinematics-positive", pivot_distance)
     if sense not in (1, -1):
-        raise DimensionError("sense", "1 or -1", sense)
+        raise DimensionError("sense", "kinematics-swing-sense", sense)

@@ -47,17 +47,18 @@ class Cam:
 
     def __post_init__(self) -> None:
         if self.rotation not in ("ccw", "cw"):
-            raise DimensionError("rotation", "ccw or cw", self.rotation)
+            raise DimensionError("rotation", "kinematics-ccw-or-cw", self.rotation)
         # Exact extremes, so that no sample between angles can violate the limits.
         s, v = self.program.peaks[:2]
         low, high = self.follower.span
         if not low < s.least <= s.greatest < high:
-            raise DimensionError("displacement", f"between {low} and {high} for this follower", (s.least, s.greatest))
+            expected = "kinematics-displacement-of-follower"
+            raise DimensionError("displacement", expected, (s.least, s.greatest), lowest=f"{low}", highest=f"{high}")
         if isinstance(self.follower, OscillatingFlat):
             # dα/dθ = 1 − sense · v must stay positive.
             rate = v.greatest if self.follower.sense == 1 else -v.least
             if not rate < 1.0:
-                raise DimensionError("velocity of a flat face's arm", "less than the cam's (1 rad/rad)", rate)
+                raise DimensionError("kinematics-flat-arm-velocity", "kinematics-less-than-cam-velocity", rate)
 
     @property
     def size(self) -> float:

@@ -66,7 +66,7 @@ class FollowerTrain:
             value = getattr(self, name)
             least = name in ("mass", "stiffness")
             if not (math.isfinite(value) and (value > 0.0 if least else value >= 0.0)):
-                raise DimensionError(name.replace("_", " "), "positive" if least else "at least 0", value)
+                raise DimensionError(name, "kinematics-positive" if least else "kinematics-at-least", value, least=0)
 
     @property
     def natural_frequency(self) -> float:
@@ -102,9 +102,9 @@ class Response:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and self.speed > 0.0):
-            raise DimensionError("speed", "positive", self.speed)
+            raise DimensionError("speed", "kinematics-positive", self.speed)
         if not self.train.damping_ratio < 1.0:
-            raise DimensionError("damping ratio", "less than 1", self.train.damping_ratio)
+            raise DimensionError("kinematics-damping-ratio", "kinematics-less-than-1", self.train.damping_ratio)
 
     @property
     def frequency_ratio(self) -> float:

@@ -66,9 +66,13 @@ class SpringConstraints:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.speed <= self.top_speed < math.inf:
-            raise DimensionError("top speed", f"at least the speed {self.speed}, which is positive", self.top_speed)
+            raise DimensionError(
+                "kinematics-top-speed", "kinematics-at-least-speed", self.top_speed, speed=f"{self.speed}"
+            )
         if not 0.0 <= self.least_rate <= self.greatest_rate or math.isinf(self.least_rate):
-            raise DimensionError("greatest rate", f"at least the least rate {self.least_rate}", self.greatest_rate)
+            raise DimensionError(
+                "kinematics-greatest-rate", "kinematics-at-least-rate", self.greatest_rate, rate=f"{self.least_rate}"
+            )
 
 
 @dataclass(frozen=True)

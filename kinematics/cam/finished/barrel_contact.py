@@ -84,9 +84,11 @@ class UnrolledWall:
         if self.points.ndim != 1 or len(self.points) < MIN_POINTS:
             raise ShapeError(points=self.points.shape)
         if not (math.isfinite(self.period) and self.period > 0.0):
-            raise DimensionError("period", "positive", self.period)
-        if not np.isfinite(self.points).all() or not (np.abs(self.chords) > 0.0).all():
-            raise DimensionError("wall points", "finite and different from their neighbours", self.points)
+            raise DimensionError("period", "kinematics-positive", self.period)
+        distinct = np.isfinite(self.points) & (np.abs(self.chords) > 0.0)
+        if not distinct.all():
+            point = complex(self.points[~distinct][0])
+            raise DimensionError("kinematics-wall-points", "kinematics-distinct-neighbours", point)
 
     @cached_property
     def chords(self) -> Complex:
@@ -103,7 +105,7 @@ class UnrolledWall:
             If the wall has none.
         """
         if self.at is None:
-            raise DimensionError("angles of the points", "given with them", None)
+            raise DimensionError("kinematics-point-angles", "kinematics-given-with-points", None)
         return self.at
 
     @cached_property
@@ -171,9 +173,8 @@ class UnrolledWall:
             Radius of the roller, large enough that points of the wall lie on both sides of its contact.
         """
         if not roller_radius >= MIN_ROLLER_CHORDS * np.abs(self.chords).max():
-            raise DimensionError(
-                "roller radius", f"at least {MIN_ROLLER_CHORDS * np.abs(self.chords).max()}", roller_radius
-            )
+            least = f"{MIN_ROLLER_CHORDS * np.abs(self.chords).max()}"
+            raise DimensionError("kinematics-roller-radius", "kinematics-at-least", roller_radius, least=least)
         at = np.asarray(x, dtype=np.float64)
         flat = np.ascontiguousarray(at.reshape(-1))
         values, shares = np.empty(flat.size), np.empty(flat.size)

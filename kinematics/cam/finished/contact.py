@@ -130,10 +130,14 @@ class Contour:
             if self.at.shape != self.points.shape:
                 raise ShapeError(points=self.points.shape, at=self.at.shape)
             # Including the step back to the first point: the angles stay within one turn.
-            if not (np.diff(np.append(self.at, self.at[0] + TURN)) > 0.0).all():
-                raise DimensionError("angles of the points", "ascending within a turn", self.at)
-        if not np.isfinite(self.points).all() or not (self.chords > 0.0).all():
-            raise DimensionError("profile points", "finite and different from their neighbours", self.points)
+            ascending = np.diff(np.append(self.at, self.at[0] + TURN)) > 0.0
+            if not ascending.all():
+                angle = float(self.at[~ascending][0])
+                raise DimensionError("kinematics-point-angles", "kinematics-ascending-within-turn", angle)
+        distinct = np.isfinite(self.points) & (self.chords > 0.0)
+        if not distinct.all():
+            point = complex(self.points[~distinct][0])
+            raise DimensionError("kinematics-profile-points", "kinematics-distinct-neighbours", point)
 
     @cached_property
     def chords(self) -> Real:
@@ -155,7 +159,7 @@ class Contour:
             If the profile has none.
         """
         if self.at is None:
-            raise DimensionError("angles of the points", "given with them", None)
+            raise DimensionError("kinematics-point-angles", "kinematics-given-with-points", None)
         return self.at
 
     @cached_property
@@ -256,7 +260,9 @@ class Contour:
         flipped = getattr(follower, "sense", 1) == -1
         roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
         if roller and 0.0 < sizes[2] < MIN_ROLLER_CHORDS * self.chords.max():
-            raise DimensionError("roller radius", f"0 or at least {MIN_ROLLER_CHORDS * self.chords.max()}", sizes[2])
+            least = f"{MIN_ROLLER_CHORDS * self.chords.max()}"
+            given = float(sizes[2])
+            raise DimensionError("kinematics-roller-radius", "kinematics-zero-or-at-least", given, least=least)
         values: Real = np.empty(theta.size)
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
@@ -302,7 +308,8 @@ class Contour:
         kind, sizes, zero = get_kernel_dimensions(follower)
         kinds = {TRANSLATING_ROLLER: TRANSLATING_INNER_ROLLER, OSCILLATING_ROLLER: OSCILLATING_INNER_ROLLER}
         if kind not in kinds or not sizes[2] >= MIN_ROLLER_CHORDS * self.chords.max():
-            raise DimensionError("roller radius", f"at least {MIN_ROLLER_CHORDS * self.chords.max()}", sizes[2])
+            least = f"{MIN_ROLLER_CHORDS * self.chords.max()}"
+            raise DimensionError("kinematics-roller-radius", "kinematics-at-least", float(sizes[2]), least=least)
         curves = np.ascontiguousarray(np.conj(self.curves) if rotation == "ccw" else self.curves)
         flat = np.ascontiguousarray(theta.reshape(-1))
         values: Real = np.empty(flat.size)

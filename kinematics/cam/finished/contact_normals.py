@@ -104,5 +104,5 @@ def _build_from_sine(sine: Real, radius: float) -> Normals:
 
 def _check_roller_radius(radius: float) -> float:
     if not radius > 0.0:
-        raise DimensionError("roller radius", "positive, since a knife edge determines no normal", radius)
+        raise DimensionError("kinematics-roller-radius", "kinematics-positive-for-normal", radius)
     return radius

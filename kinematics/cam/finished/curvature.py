@@ -176,8 +176,9 @@ def _build_curvature(
     step: Real,
 ) -> ProfileCurvature:
     """Build the curvature, given the angle of the normals' frame at each point and its turn to the next."""
-    if not np.isfinite(normals.lean).all():
-        raise DimensionError("profile", "touched by the follower at the angles of its points", normals.lean)
+    untouched = int((~np.isfinite(normals.lean)).sum())
+    if untouched:
+        raise DimensionError("profile", "kinematics-touched-at-points", untouched)
     turn = fitted(normals.lean)
     # Add the frame's own rotation, linear in the share of the chord, to the constant and linear coefficients.
     turn[:, 0] += start

@@ -96,7 +96,7 @@ def fit_local_curves(points: Complex, at: Real, own: Integers) -> Complex:
         solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
     except np.linalg.LinAlgError:
         # A point far away from all others makes their angles, seen from the centre, equal to rounding.
-        raise DimensionError("points of the profile", "apart in the cam's angle", "points that coincide") from None
+        raise DimensionError("kinematics-profile-points", "kinematics-apart-in-angle", "points that coincide") from None
     curves = solved[..., 0] + 1j * solved[..., 1]
     # The solution reproduces the first point only to rounding; set it exactly.
     curves[:, 0] = start

@@ -38,7 +38,7 @@ def measure_program(contour: Contour, follower: Follower, rotation: Rotation, co
     """
     found = contour.follow(follower, space_angles(count), rotation)
     if not found.valid.all():
-        raise DimensionError("profile", "touched by the follower at every cam angle", int((~found.valid).sum()))
+        raise DimensionError("profile", "kinematics-touched-at-every-angle", int((~found.valid).sum()))
     h = TURN / count
     # Derivatives by the share of a step, as the Hermite matrix expects.
     states = np.stack([found.s, h * found.v, h * h * found.a], axis=1)

@@ -99,7 +99,7 @@ def build_sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> La
     # The tolerance 1e-12 absorbs the rounding of fractions such as 1/16 + 3/16.
     rest = 0.5 - (p1 + p2 + p3)
     if min(p1, p2, p3) < 0.0 or rest < -1e-12 or p1 + p2 + p3 <= 0.0:
-        raise DimensionError("parts of the law", "at least 0, one positive, with a sum of at most 1/2", (p1, p2, p3))
+        raise DimensionError("kinematics-law-parts", "kinematics-shares-of-half", (p1, p2, p3))
     parts: list[tuple[float, list[float], tuple[float, float, float]]] = []
     # Integrate unit acceleration piece by piece; the lift is scaled to 1 at the end.
     s, v = 0.0, 0.0

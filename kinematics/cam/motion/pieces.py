@@ -114,9 +114,9 @@ def build_polynomial_pieces(start: ArrayLike, coefficients: ArrayLike) -> Pieces
     """Build a piecewise polynomial from breaks, shape (n + 1,), and local coefficients, shape (n, degree + 1)."""
     breaks, polynomial = np.array(start, dtype=np.float64), np.array(coefficients, dtype=np.float64)
     if polynomial.ndim != 2 or breaks.shape != (len(polynomial) + 1,) or not len(polynomial):
-        raise DimensionError("breaks", "one more than the rows of coefficients", breaks.shape)
+        raise DimensionError("breaks", "kinematics-one-more-than-rows", breaks.shape)
     if not (np.isfinite(breaks).all() and np.isfinite(polynomial).all() and (np.diff(breaks) > 0.0).all()):
-        raise DimensionError("breaks and coefficients", "finite, breaks ascending", start)
+        raise DimensionError("kinematics-breaks-and-coefficients", "kinematics-breaks-ascend", start)
     none = np.zeros((len(polynomial), MAX_HARMONICS))
     return Pieces(breaks, polynomial, none, none, none)
 

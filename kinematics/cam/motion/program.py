@@ -86,7 +86,7 @@ class Program:
         total = math.fsum(segment.angle for segment in self.segments)
         # "not <=" also rejects NaN.
         if not abs(total - TURN) <= CLOSURE_TOLERANCE:
-            raise DimensionError("sum of the segments' angles", "one turn (360 degrees)", math.degrees(total))
+            raise DimensionError("kinematics-segment-angles", "kinematics-one-turn", math.degrees(total))
 
     @cached_property
     def pieces(self) -> Pieces:

@@ -89,14 +89,14 @@ def build_knot_segment(knots: ArrayLike, coefficients: ArrayLike) -> Segment:
     """Build a piecewise polynomial from knot angles starting at 0, shape (n + 1,), and local coefficients (n, k)."""
     pieces = build_polynomial_pieces(knots, coefficients)
     if pieces.start[0] != 0.0:
-        raise DimensionError("first knot", "0", float(pieces.start[0]))
+        raise DimensionError("kinematics-first-knot", "0", float(pieces.start[0]))
     return Segment("spline", pieces)
 
 
 def _fit_conditions(angle: float, conditions: Sequence[Condition]) -> Pieces:
     """Solve for the polynomial in θ/β: one square linear system, rows scaled to 1, refined once."""
     if not conditions:
-        raise DimensionError("conditions", "at least one", [])
+        raise DimensionError("conditions", "kinematics-one-or-more", [])
     terms = len(conditions)
     matrix, values = np.zeros((terms, terms)), np.zeros(terms)
     # Values in units of the largest one, so that the conditioning does not depend on the unit of length.
@@ -104,7 +104,7 @@ def _fit_conditions(angle: float, conditions: Sequence[Condition]) -> Pieces:
     for row, (at, order, value) in enumerate(conditions):
         if not (0.0 <= at <= angle and math.isfinite(value) and 0 <= order < terms):
             raise DimensionError(
-                "condition", f"at an angle from 0 to {angle}, of an order up to {terms - 1}", (at, order, value)
+                "condition", "kinematics-condition-in-segment", (at, order, value), angle=f"{angle}", order=terms - 1
             )
         matrix[row] = _evaluate_powers(at / angle, terms, order)
         values[row] = value * angle**order / scale
@@ -113,7 +113,7 @@ def _fit_conditions(angle: float, conditions: Sequence[Condition]) -> Pieces:
     matrix, values = matrix / size[:, None], values / size
     # Conditions may repeat or imply each other, such as three positions of a line.
     if np.linalg.cond(matrix) > 1.0 / MIN_INDEPENDENCE:
-        raise DimensionError("conditions", "such that they determine one polynomial", [tuple(c) for c in conditions])
+        raise DimensionError("conditions", "kinematics-one-polynomial", [tuple(c) for c in conditions])
     coefficients = np.linalg.solve(matrix, values)
     # One step of iterative refinement: high-order conditions make the matrix ill-conditioned.
     coefficients += np.linalg.solve(matrix, values - matrix @ coefficients)
@@ -127,11 +127,11 @@ def _evaluate_powers(x: float, terms: int, order: int) -> Real:
 
 def _check_angle(value: float) -> float:
     if not (math.isfinite(value) and value > 0.0):
-        raise DimensionError("angle of a segment", "positive", value)
+        raise DimensionError("kinematics-segment-angle", "kinematics-positive", value)
     return value
 
 
 def _check_finite(name: str, value: float) -> float:
     if not math.isfinite(value):
-        raise DimensionError(name, "finite", value)
+        raise DimensionError(name, "kinematics-finite", value)
     return value

@@ -12,6 +12,7 @@ from kinematics.cam.dynamics import RunningCam
 from kinematics.cam.motion.extremes import find_extremes
 from kinematics.cam.motion.program import Program
 from kinematics.cam.springs import Spring
+from kinematics.message import compose, join_messages
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
     Binding,
@@ -106,7 +107,7 @@ def evaluate_optimality(problem: CamProblem, composed: Composition, size: float)
         # The convex program bounds the size by pressure angle and curvature only; the other limits may
         # enlarge the cam.
         if composed.bound is not None:
-            scope += "; the bound is by pressure angle, or by curvature and width of a face"
+            scope = compose("cam-scope-of-size", scope=scope)
     bound = None if composed.bound is None else min(composed.bound, value)
     # The program works with moments about an oscillating arm's pivot; the answer is in forces at the roller.
     if problem.minimize == "peak_contact_force":
@@ -282,23 +283,28 @@ def build_result(
     failed = [check.name for check in design.verification.checks if not check.passed]
     sifting = CandidateLog[CamDesign | BarrelCamDesign](problem)
     sifting.record_candidate(design)
-    name, length = radius
+    circle, length = radius
     if passed:
-        summary = f"A cam with a {name} radius of {length:.6g} {problem.length_unit} follows the program."
+        summary = [compose("cam-follows-program", circle=circle, radius=f"{length:.6g}", unit=problem.length_unit)]
         if design.optimality.bound is not None and design.optimality.gap is not None:
             gap = 100.0 * design.optimality.gap
-            summary += f" Its {problem.minimize.replace('_', ' ')} is within {gap:.2g} % of the minimum."
+            summary.append(compose("cam-is-near-minimum", criterion=problem.minimize, gap=f"{gap:.2g}"))
         if design.optimality.warning is not None:
-            summary += f" {design.optimality.warning}"
+            summary.append(design.optimality.warning)
         if design.metrics.peak_jerk is None:
-            summary += " The acceleration jumps, so the jerk has no finite peak and none is reported."
+            summary.append(compose("cam-jerk-unbounded"))
     else:
-        summary = (
-            f"The smallest cam found, with a {name} radius of {length:.6g} {problem.length_unit}, fails: "
-            f"{', '.join(failed)}."
-        )
+        summary = [
+            compose(
+                "cam-fails-checks",
+                circle=circle,
+                radius=f"{length:.6g}",
+                unit=problem.length_unit,
+                checks=", ".join(failed),
+            )
+        ]
         if "meets_accelerations" in failed and problem.limits.jerk is None:
-            summary += " Without a limit on jerk an acceleration may be reached only for an instant; set `limits.jerk`."
+            summary.append(compose("cam-acceleration-for-instant"))
     # A given radius is not the result of an optimization.
     stated = any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
     given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
@@ -309,7 +315,7 @@ def build_result(
         search=CamSearch(
             **dict(sifting.build_search(_describe_method(composed, stated), complete=proof)), sizing_proven=size.proven
         ),
-        summary=summary,
+        summary=join_messages(summary),
     )
 
 
@@ -326,5 +332,5 @@ def build_empty_result(problem: CamProblem, reason: str, proven: bool, cause: st
     return CamResult(
         designs=[],
         search=CamSearch(**dict(sifting.build_search(method, complete=proven)), sizing_proven=proven),
-        summary=f"None exists: {reason}." if proven else f"None found: {reason}.",
+        summary=compose("cam-none-exists" if proven else "cam-none-found", reason=reason),
     )

@@ -17,6 +17,7 @@ from kinematics.arrays import Real
 from kinematics.cam.barrel import BarrelCam
 from kinematics.cam.motion.pieces import Motion
 from kinematics.cam.motion.program import Program
+from kinematics.message import compose
 from synthesis.kinds.cam.answer import (
     build_empty_result,
     build_result,
@@ -44,10 +45,10 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     program, roller = composed.program, follower.roller_radius
     size = size_barrel(problem, follower, program)
     if size is None:
-        reason = "no cylinder carries the program within the limits on pressure angle and curvature"
+        reason = compose("cam-no-cylinder-fits")
         return build_empty_result(problem, reason, composed.bound is None, "size")
     barrel = BarrelCam(program, size.radius, roller)
-    progress(0.7, "verifying")
+    progress(0.7, compose("cam-verifying"))
 
     # Both walls get points at the same angles, those of the wall that needs more points.
     walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
@@ -60,10 +61,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
         progress,
     )
     if measured is None:
-        reason = (
-            f"the contact of a roller of radius {roller:.6g} in a groove on a cylinder of radius {size.radius:.6g} is "
-            "not resolved by the maximum number of points per wall; use a larger roller or a slower motion"
-        )
+        reason = compose("cam-groove-unresolved", roller=f"{roller:.6g}", cylinder=f"{size.radius:.6g}")
         return build_empty_result(problem, reason, False, "follower_can_be_laid_on")
     design = BarrelCamDesign(
         mechanism=mechanism,
@@ -73,7 +71,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
         verification=verification,
         metrics=_compute_metrics(problem, program, follower.roller_radius, measured),
     )
-    progress(1.0, "verified")
+    progress(1.0, compose("cam-verified"))
     return build_result(problem, composed, design, size, ("cylinder", size.radius))
 
 

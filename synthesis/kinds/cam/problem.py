@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.kinds.cam.statement.followers import (
     BarrelRoller,
     Follower,
@@ -189,16 +190,12 @@ class CamProblem(ProblemBase):
     def _check_closure(self) -> list[Contradiction]:
         """Check the form closure: a groove or two cams can only guide a roller."""
         if self.closure != "force" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
-            detail = "a groove can only guide a roller; choose a roller follower, or closure `force`"
-            if self.closure == "conjugate":
-                detail = "conjugate cams can only guide rollers; choose a roller follower, or closure `force`"
-            return [Contradiction("/closure", detail)]
+            fault = "cam-pair-needs-rollers" if self.closure == "conjugate" else "cam-groove-needs-roller"
+            return [Contradiction("/closure", compose(fault))]
         if self.closure == "conjugate" and isinstance(self.follower, BarrelRoller):
-            detail = "a barrel's groove already has two walls; choose a radial roller follower"
-            return [Contradiction("/closure", detail)]
+            return [Contradiction("/closure", compose("cam-barrel-has-walls"))]
         if self.closure == "conjugate" and isinstance(self.follower, TranslatingRoller) and self.follower.overhang:
-            detail = "a yoke around two cams is guided on both sides; omit the overhang"
-            return [Contradiction("/follower/overhang", detail)]
+            return [Contradiction("/follower/overhang", compose("cam-yoke-has-no-overhang"))]
         return []
 
     def _check_spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
@@ -211,39 +208,30 @@ class CamProblem(ProblemBase):
             any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments),
         )
         if isinstance(rate, RateRange) and rate.min >= rate.max:
-            contradictions.append(Contradiction("/dynamics/spring_rate/max", "must be above min"))
+            contradictions.append(Contradiction("/dynamics/spring_rate/max", compose("cam-max-not-above-min")))
         elif isinstance(rate, RateRange) and dynamics.min_frequency_ratio is not None:
             least = (
                 dynamics.mass * METRES[self.length_unit] * (dynamics.min_frequency_ratio * speed * math.pi / 30.0) ** 2
             )
             if least > rate.max:
-                detail = f"the spring needs a rate of at least {least:.6g}, above the given range"
+                detail = compose("cam-spring-range-too-low", least=f"{least:.6g}")
                 contradictions.append(Contradiction("/dynamics/min_frequency_ratio", detail))
         if dynamics.train_damping_ratio > 0.0 and dynamics.train_stiffness is None:
-            detail = "a train damping ratio needs `train_stiffness`"
+            detail = compose("cam-train-stiffness-missing")
             contradictions.append(Contradiction("/dynamics/train_damping_ratio", detail))
         if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
-            contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least `speed_rpm`"))
+            contradictions.append(Contradiction("/dynamics/max_rpm", compose("cam-max-rpm-below-speed")))
         if self.is_form_closed:
-            detail = (
-                "between two walls no spring is needed to hold the follower; give a rate, or choose closure `force`"
-            )
             if free:
-                contradictions.append(Contradiction("/dynamics/spring_rate", detail))
+                contradictions.append(Contradiction("/dynamics/spring_rate", compose("cam-walls-need-no-spring")))
             if dynamics.max_rpm is not None:
-                contradictions.append(Contradiction("/dynamics/max_rpm", "in a groove no contact is lost; omit it"))
+                contradictions.append(Contradiction("/dynamics/max_rpm", compose("cam-groove-keeps-contact")))
         if self.minimize == "peak_contact_force" and sought:
             if free:
-                detail = (
-                    "force times displacement is not convex if both are unknown; give the spring rate to minimize the "
-                    "contact force, or choose the spring for another criterion or for given laws"
-                )
+                detail = compose("cam-spring-and-motion-unknown")
                 contradictions.append(Contradiction("/dynamics/spring_rate", detail))
             if dynamics.max_rpm is not None:
-                detail = (
-                    "motions of minimum contact force are found for one speed only; choose another criterion or omit "
-                    "`max_rpm`"
-                )
+                detail = compose("cam-contact-force-at-one-speed")
                 contradictions.append(Contradiction("/dynamics/max_rpm", detail))
         return contradictions
 
@@ -253,34 +241,30 @@ class CamProblem(ProblemBase):
         forces = self.dynamics is not None
         if isinstance(follower, TranslatingRoller) and follower.overhang is not None:
             if not forces:
-                detail = "the overhang is the lever of a force; give `dynamics` or omit the overhang"
+                detail = compose("cam-overhang-needs-dynamics")
                 contradictions.append(Contradiction("/follower/overhang", detail))
             elif follower.overhang <= max(max(pair) for pair in self.program.heights()):
-                detail = "must exceed the highest displacement; otherwise the roller runs into the guide"
+                detail = compose("cam-overhang-too-short")
                 contradictions.append(Contradiction("/follower/overhang", detail))
         if isinstance(follower, TranslatingFlat) and follower.offset == "free" and not forces:
-            detail = "a free offset minimizes the overturning moment; give `dynamics`, or the offset"
+            detail = compose("cam-free-offset-needs-dynamics")
             contradictions.append(Contradiction("/follower/offset", detail))
         if self.limits.overturning_moment is None:
             return contradictions
         place = "/limits/overturning_moment"
         if not isinstance(follower, TranslatingRoller | TranslatingFlat):
-            contradictions.append(
-                Contradiction(place, "only a slide on a radial cam can be overturned; omit the limit")
-            )
+            contradictions.append(Contradiction(place, compose("cam-moment-needs-slide")))
         elif not forces:
-            contradictions.append(
-                Contradiction(place, "a moment depends on the follower's mass and spring; give `dynamics`")
-            )
+            contradictions.append(Contradiction(place, compose("cam-moment-needs-dynamics")))
         elif isinstance(follower, TranslatingRoller) and follower.overhang is None:
-            contradictions.append(Contradiction("/follower/overhang", "required: the lever of the limited moment"))
+            contradictions.append(Contradiction("/follower/overhang", compose("cam-moment-needs-overhang")))
         return contradictions
 
     def _check_limits(self) -> list[Contradiction]:
         """Check that limits on the motion are only given if some motion is left to choose."""
         if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
             return []
-        detail = "all laws are given, so their peaks cannot change; set a law to auto or optimal, or omit the limit"
+        detail = compose("cam-limits-need-free-law")
         return [
             Contradiction(f"/limits/{name}", detail)
             for name in ("velocity", "acceleration", "jerk")
@@ -292,25 +276,21 @@ class CamProblem(ProblemBase):
         contradictions = []
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
-            contradictions.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
+            contradictions.append(Contradiction("/dynamics", compose("cam-contact-force-needs-dynamics")))
         if force and self.is_form_closed:
-            contradictions.append(
-                Contradiction("/minimize", "in a groove no force holds the follower; choose another criterion")
-            )
+            contradictions.append(Contradiction("/minimize", compose("cam-groove-has-no-contact-force")))
         if self.dynamics is not None and self.dynamics.least_force > 0.0 and self.is_form_closed:
-            detail = "in a groove the roller changes walls and the force its sign; omit `least_force`"
+            detail = compose("cam-groove-has-no-least-force")
             contradictions.append(Contradiction("/dynamics/least_force", detail))
         if self.dynamics is not None and self.speed_rpm is None:
-            contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
+            contradictions.append(Contradiction("/speed_rpm", compose("cam-forces-need-speed")))
         elif self.dynamics is not None:
             contradictions += self._check_spring(self.dynamics)
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
         if optimal and self.minimize == "size" and self.is_oscillating:
-            detail = (
-                "optimal motions of minimum size are found for translating followers only; choose another criterion"
-            )
+            detail = compose("cam-least-size-needs-translation")
             contradictions.append(Contradiction("/minimize", detail))
         if optimal and self.minimize == "size" and isinstance(self.follower, BarrelRoller):
-            detail = "a barrel is smallest at the minimum peak velocity, by pressure angle; choose peak_velocity"
+            detail = compose("cam-least-barrel-by-velocity")
             contradictions.append(Contradiction("/minimize", detail))
         return contradictions

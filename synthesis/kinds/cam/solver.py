@@ -14,6 +14,7 @@ from kinematics.cam import follower as core
 from kinematics.cam.motion.program import Program
 from kinematics.cam.profile import Cam
 from kinematics.errors import DimensionError
+from kinematics.message import compose
 from synthesis.kinds.cam.answer import (
     build_empty_result,
     build_result,
@@ -36,7 +37,7 @@ from synthesis.kinds.cam.dynamics.overturning import compute_overturning_moment,
 from synthesis.kinds.cam.follower_loads import get_arm_length
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.profile import build_cam_mechanism, choose_profile_angles, refine_angles
-from synthesis.kinds.cam.program.composition import Composition, NoProgram, compose
+from synthesis.kinds.cam.program.composition import Composition, NoProgram, compose_program
 from synthesis.kinds.cam.program.optimal import GRID_STEP_COUNTS
 from synthesis.kinds.cam.program.radius_limits import (
     compute_min_face_radius,
@@ -106,8 +107,8 @@ MAX_SHORTFALL = 1e-3
 
 def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     """Find the best motion program of a cam problem and the smallest cam for it, and verify them."""
-    progress(0.05, "composing the motion program")
-    composed = compose(problem, progress=progress, reach=(0.05, 0.4))
+    progress(0.05, compose("cam-composing-program"))
+    composed = compose_program(problem, progress=progress, reach=(0.05, 0.4))
     if isinstance(composed, NoProgram):
         return build_empty_result(problem, composed.reason, composed.proven, "motion_limits")
     composed = _smooth_motion(problem, composed, progress)
@@ -115,8 +116,8 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         # Automatic laws may still leave a jump between segments: report the first one.
         joint = next(joint for joint in composed.program.continuity if not all(joint.continuous[:3]))
         where = f"/segments/{joint.segments[1]}"
-        raise ContradictionError(Contradiction(where, "the motion is not continuous there; see accept_discontinuity"))
-    progress(0.5, "sizing the cam")
+        raise ContradictionError(Contradiction(where, compose("cam-motion-jumps")))
+    progress(0.5, compose("cam-sizing"))
     if isinstance(problem.follower, BarrelRoller):
         return solve_barrel(problem, problem.follower, composed, progress)
     sized = _size_cam(problem, composed.program)
@@ -129,15 +130,15 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         else:
             # The width of an arm's face is only checked on a grid of start angles, which is no proof.
             proven = proven and problem.limits.face_width is None
-        reason = "no cam of any size follows the program within the limits on pressure angle, curvature and face width"
+        reason = compose("cam-no-size-fits")
         return build_empty_result(problem, reason, proven, "size")
     # With conjugate closure, the second cam follows from the program of the first.
     cam, size = sized
     cams = _add_second_cam(problem, cam)
     if cams is None:
-        reason = "the second of the conjugate cams has no size within the limits on pressure angle and curvature"
+        reason = compose("cam-no-second-size-fits")
         return build_empty_result(problem, reason, False, "size")
-    progress(0.7, "verifying")
+    progress(0.7, compose("cam-verifying"))
     mechanism, verification, measured = _verify_cams(problem, cams, progress)
     tighter = _tighten_curvature(problem, verification)
     # A second sizing with a slightly tighter limit on curvature compensates for the measurement error.
@@ -159,7 +160,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         verification=verification,
         metrics=metrics,
     )
-    progress(1.0, "verified")
+    progress(1.0, compose("cam-verified"))
     return build_result(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
 
 
@@ -211,13 +212,10 @@ def _tighten_curvature(problem: CamProblem, verification: Verification) -> CamPr
 def _explain_no_contact(cam: Cam) -> str:
     """Explain why the follower cannot be laid against the profile."""
     if cam.program.smoothness < 2:
-        return "the profile breaks off at a jump of the displacement or the velocity; choose laws that join"
+        return compose("cam-profile-breaks-off")
     if cam.roller_radius <= 0.0:
-        return "the follower cannot be laid against the profile"
-    return (
-        f"the contact of a roller of radius {cam.roller_radius:.6g} on a cam of prime radius {cam.size:.6g} is not "
-        "resolved by the maximum number of points per profile; use a larger roller or a slower motion"
-    )
+        return compose("cam-no-contact")
+    return compose("cam-profile-unresolved", roller=f"{cam.roller_radius:.6g}", radius=f"{cam.size:.6g}")
 
 
 def _smooth_motion(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:
@@ -237,7 +235,7 @@ def _smooth_motion(problem: CamProblem, composed: Composition, progress: Progres
     for n, share in enumerate(PEAK_ACCELERATIONS):
         if least <= composed.bound * (1.0 + BOUND_TOLERANCE):
             break
-        progress(0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), "trading size by pressure angle against size by curvature")
+        progress(0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), compose("cam-trading-sizes"))
         a = share * composed.program.lift / span**2
         j = JERK_SHARE * a / span
         limits = stated.model_copy(
@@ -245,7 +243,7 @@ def _smooth_motion(problem: CamProblem, composed: Composition, progress: Progres
         )
         reach = 0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), 0.4 + 0.1 * (n + 1) / len(PEAK_ACCELERATIONS)
         # The coarse grid suffices to compare sizes. The bound comes from the first solution.
-        other = compose(problem.model_copy(update={"limits": limits}), GRID_STEP_COUNTS[:1], progress, reach)
+        other = compose_program(problem.model_copy(update={"limits": limits}), GRID_STEP_COUNTS[:1], progress, reach)
         if isinstance(other, Composition):
             radius = _compute_radius(problem, other)
             if radius < least:

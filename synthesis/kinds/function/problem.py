@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.function.statement.functions import FunctionStatement
 from synthesis.kinds.function.statement.mechanism_types import (
     SIXBARS,
@@ -447,36 +448,33 @@ class FunctionProblem(LinkageProblem):
             *check_types(self),
         ]
         if self.slides:
-            found += self.constraints.find_class_contradictions(
-                (), "applies only to fourbars; a slider-crank has no class"
-            )
+            found += self.constraints.find_class_contradictions((), compose("function-class-needs-fourbar"))
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:
-            detail = "equals the input's pivot; the ground link would have length zero"
-            found.append(Contradiction("/fixed_pivots/output", detail))
+            found.append(Contradiction("/fixed_pivots/output", compose("function-pivots-coincide")))
         if self.range_limits[0] < MIN_RANGE or self.range_limits[1] > MAX_RANGE:
-            detail = f"must lie between {MIN_RANGE} and {MAX_RANGE} degrees"
+            detail = compose("function-range-limits-outside", lowest=f"{MIN_RANGE}", highest=f"{MAX_RANGE}")
             found.append(Contradiction("/range_limits", detail))
         if self.scale_limits[0] <= 0.0:
-            found.append(Contradiction("/scale_limits", "scales must be positive"))
+            found.append(Contradiction("/scale_limits", compose("function-scales-not-positive")))
         return found
 
     def _check_statement(self) -> Iterator[Contradiction]:
         # Later checks need exactly one of the two.
         if (self.pairs is None) == (self.function is None):
             where = "/pairs" if self.pairs is None else "/function"
-            yield Contradiction(where, "give either pairs or a function")
+            yield Contradiction(where, compose("function-pairs-or-function"))
             return
         if self.pairs is not None:
             for field in ("input_range", "output_range", "precision_points"):
                 if getattr(self, field) is not None:
-                    yield Contradiction(f"/{field}", "applies only to a function; pairs define their own")
+                    yield Contradiction(f"/{field}", compose("function-field-is-for-functions"))
             yield from self._check_pairs(self.pairs)
             return
         assert self.function is not None
         if self.scales is not None:
-            yield Contradiction("/scales", "applies only to pairs; a function has ranges")
+            yield Contradiction("/scales", compose("function-scales-are-for-pairs"))
         if self.criterion not in (None, "precision") and self.precision_points is not None:
-            detail = f"{self.criterion} approximates the whole range and uses no precision points"
+            detail = compose("function-criterion-uses-no-points", criterion=self.criterion)
             yield Contradiction("/precision_points", detail)
         faults = list(self.function.find_errors())
         yield from (Contradiction(f"/function{fault.path}", fault.detail) for fault in faults)
@@ -489,27 +487,26 @@ class FunctionProblem(LinkageProblem):
             for j, earlier in enumerate(turned[:k]):
                 # Inputs that differ by full turns are the same position of the link.
                 if abs(math.remainder(later - earlier, FULL_TURN)) <= INPUT_TOLERANCE:
-                    yield Contradiction(f"/pairs/{k}/input", f"equals that of pair {j}; inputs must differ")
+                    yield Contradiction(f"/pairs/{k}/input", compose("function-inputs-equal", pair=j))
                     return
         if max(turned) - min(turned) > MAX_RANGE:
-            yield Contradiction("/pairs", "the inputs cover a full turn or more")
+            yield Contradiction("/pairs", compose("function-inputs-cover-turn"))
             return
         steps = np.sign(np.diff(turned))
         wrong = np.flatnonzero(steps != steps[0])
         # Without order, the input may oscillate between the pairs.
         if self.constraints.in_order and len(wrong):
-            detail = "inputs must rise, or fall, from pair to pair, unless in_order is false"
+            detail = compose("function-inputs-unordered")
             yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
         moved = [float(value) for value in self.values[:, 1]]
         if not self.slides and max(moved) - min(moved) > MAX_RANGE:
-            yield Contradiction("/pairs", "the outputs cover a full turn or more")
+            yield Contradiction("/pairs", compose("function-outputs-cover-turn"))
         # Angles are compared absolutely, lengths relative to their size.
         if max(moved) - min(moved) <= INPUT_TOLERANCE * (max(map(abs, moved)) if self.slides else 1.0):
-            yield Contradiction("/pairs", "the output does not move")
+            yield Contradiction("/pairs", compose("function-output-rests"))
         if self.aim == "precision" and len(pairs) > self.max_exact_pairs:
-            more = "request only watt_2 for nine" if self.only_sixbars else "leave zeros or scales open"
-            detail = f"at most {self.max_exact_pairs} pairs can be met exactly; {more}, or use another criterion"
-            yield Contradiction("/pairs", detail)
+            reason = "function-too-many-sixbar-pairs" if self.only_sixbars else "function-too-many-pairs"
+            yield Contradiction("/pairs", compose(reason, count=self.max_exact_pairs))
 
     def _check_ranges(self) -> Iterator[Contradiction]:
         for side in ("input", "output"):
@@ -519,22 +516,22 @@ class FunctionProblem(LinkageProblem):
             # A slider's range is a length, so limits in degrees do not apply.
             turns = side == "input" or not self.slides
             if turns and not MIN_RANGE <= abs(span) <= MAX_RANGE:
-                detail = f"a range must lie between {MIN_RANGE} and {MAX_RANGE} degrees"
+                detail = compose("function-range-outside", lowest=f"{MIN_RANGE}", highest=f"{MAX_RANGE}")
                 yield Contradiction(f"/{side}_range", detail)
             elif span == 0.0:
-                yield Contradiction(f"/{side}_range", "the output does not move")
+                yield Contradiction(f"/{side}_range", compose("function-output-rests"))
         if self.slides and self.output_range is None:
-            yield Contradiction("/output_range", "a slider's range sets the size of the linkage and must be given")
+            yield Contradiction("/output_range", compose("function-slider-range-missing"))
         if self.aim == "precision" and (self.precision_points or 0) > self.max_exact_pairs:
-            more = "request only watt_2 for nine" if self.only_sixbars else "leave zeros or ranges open"
-            yield Contradiction("/precision_points", f"at most {self.max_exact_pairs} points can be exact; {more}")
+            reason = "function-too-many-sixbar-points" if self.only_sixbars else "function-too-many-points"
+            yield Contradiction("/precision_points", compose(reason, count=self.max_exact_pairs))
 
     def _check_zeros_and_scales(self) -> Iterator[Contradiction]:
         if self.scales is not None and self.slides and self.scales.output is None:
-            yield Contradiction("/scales/output", "must be given: a slider's scale only changes the linkage's size")
+            yield Contradiction("/scales/output", compose("function-slider-scale-missing"))
         if not self.determines_watts:
             return
-        detail = "must be given, because nine pairs leave finitely many sixbars only then"
+        detail = compose("function-nine-pairs-need-it")
         for side in ("input", "output"):
             if self.scales is not None and getattr(self.scales, side) is None:
                 yield Contradiction(f"/scales/{side}", detail)

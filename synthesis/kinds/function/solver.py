@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose, join_messages
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.approximation import GeneratorDescent, find_approximations
 from synthesis.kinds.function.fourbar.constraints import GeneratorLimits
@@ -30,7 +31,6 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.ranking import get_error, rank_by_error
 from synthesis.kinds.function.type_selection import REASONS, solve_types
 from synthesis.kinds.function.verification.verify import verify_function
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog
 from synthesis.results.ranking import select_best
@@ -97,8 +97,10 @@ def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResul
     # "auto" zeros: first read few pairs as angles from the ground line, and open the zeros only if that fails.
     held = _solve_with_zeros(problem, scale_progress(progress, 0.0, FIXED_ZERO_SHARE), fit_limits=False)
     if any(design.verification.passed for design in held.designs):
-        progress(1.0, "verified")
-        return held.model_copy(update={"summary": f"{held.summary}{_FIXED_ZEROS_REMARK}"})
+        progress(1.0, compose("function-verified"))
+        return held.model_copy(
+            update={"summary": join_messages([held.summary, compose("function-values-read-as-angles")])}
+        )
     opened = _solve_with_zeros(
         problem.model_copy(update={"zeros": None}), scale_progress(progress, FIXED_ZERO_SHARE, 1.0)
     )
@@ -113,7 +115,7 @@ def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResul
         update={
             "designs": [*opened.designs, *held.designs][: problem.max_designs],
             "search": account,
-            "summary": f"{_OPEN_ZEROS_REMARK} {opened.summary}",
+            "summary": join_messages([compose("function-zeros-left-open"), opened.summary]),
         }
     )
 
@@ -121,7 +123,7 @@ def _solve_simple(problem: FunctionProblem, progress: Progress) -> FunctionResul
 def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limits: bool = True) -> FunctionResult:
     """Solve with the problem's zeros, given or open; ``fit_limits`` as for :func:`_search_family`."""
     task = make_function_task(problem)
-    progress(0.0, "reading the problem")
+    progress(0.0, compose("function-reading-problem"))
     rng = np.random.default_rng(problem.seed)
     harvest = _FunctionLog(task)
     if problem.aim != "precision":
@@ -135,7 +137,7 @@ def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limit
             # The next, stricter angle is needed only if the optimum is undrivable.
             if harvest.passed:
                 break
-        progress(1.0, "verified")
+        progress(1.0, compose("function-verified"))
         return harvest.build_approximation_result(judged, improved)
     # Degrees of freedom: three proportions and the open zeros, less one per pair; scales supply the difference.
     missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
@@ -155,13 +157,6 @@ def _solve_with_zeros(problem: FunctionProblem, progress: Progress, *, fit_limit
         # Pairs of a linkage with equivalents, for example a parallelogram, do not determine it: search the family.
     _search_family(task, harvest, rng, progress, fit_limits=fit_limits)
     return harvest.build_search_result("family")
-
-
-_FIXED_ZEROS_REMARK = " The values were read as angles from the ground line; the zeros may be left open instead."
-
-_OPEN_ZEROS_REMARK = (
-    "No linkage with the values as angles from the ground line satisfies all constraints. With the zeros left open:"
-)
 
 
 def warm_up() -> None:
@@ -208,7 +203,7 @@ def _solve_two_scales(task: FunctionTask, harvest: _FunctionLog, missing: int, p
     as_stated = np.ones((1 if task.problem.pairs is not None else 0, 2))
     choices = _list_scale_choices(task)
     for n, (first, second) in enumerate(choices):
-        progress(n / len(choices), "solving for scales")
+        progress(n / len(choices), compose("function-solving-scales"))
         if missing == -2:
             for generator in solve_two_scales(pairs, first, second, as_stated):
                 harvest.refine_and_verify(generator)
@@ -231,7 +226,7 @@ def _search_family(
     """
     members = _sample_members(task, rng)
     limits = GeneratorLimits(task)
-    progress(0.3, f"{len(members)} members of the family")
+    progress(0.3, compose("function-family-members", count=len(members)))
     generators, signs = _select_one_assembly(task, members)
     harvest.reject("circuit_defect", len(members) - len(generators))
     sine = limits.transmission(generators)
@@ -260,7 +255,7 @@ def _search_family(
         chosen.append(int(j))
         tried += 1
         harvest.refine_and_verify(generators[j], scales_given=True)
-        progress(0.3 + 0.4 * tried / most, "verifying")
+        progress(0.3 + 0.4 * tried / most, compose("function-verifying"))
     harvest.reject(OUTRANKED_REASON, len(order) - tried)
     if fit_limits and not harvest.passed:
         _fit_to_limits(task, limits, harvest, rng, progress)
@@ -273,7 +268,7 @@ def _fit_to_limits(
     descent = GeneratorDescent(task, limits)
     enough = min(ENOUGH_FITS, task.problem.max_designs)
     for n in range(MAX_FIT_ROUNDS):
-        progress(0.7 + 0.3 * n / MAX_FIT_ROUNDS, "moving family members into the limits")
+        progress(0.7 + 0.3 * n / MAX_FIT_ROUNDS, compose("function-fitting-family"))
         generators, signs = _select_one_assembly(task, _sample_members(task, rng))
         nearest = math.inf
         for j in descent.select_distinct(generators, limits.measure_violations(generators), FITS_PER_ROUND):
@@ -392,21 +387,30 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
             error = best.structural_error
             unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
             if self.problem.aim == "minimax":
-                text = f"Smallest maximum structural error found: {error.max:.4g}{unit}"
-                text += f" ({error.alternations} alternating extremes)"
+                text = compose(
+                    "function-least-maximum",
+                    maximum=f"{error.max:.4g}",
+                    unit=unit,
+                    extremes=error.alternations,
+                    improved=improved,
+                    count=judged,
+                )
             else:
-                text = f"Smallest root-mean-square structural error found: {error.rms:.4g}{unit}"
-                text += f" (maximum {error.max:.4g}{unit})"
-            text += (
-                f". {format_integer(improved)} of {format_count(judged, 'start')} were optimised; a better linkage "
-                "may exist."
-            )
+                text = compose(
+                    "function-least-rms",
+                    rms=f"{error.rms:.4g}",
+                    maximum=f"{error.max:.4g}",
+                    unit=unit,
+                    improved=improved,
+                    count=judged,
+                )
         else:
-            text = (
-                f"No design found: {format_integer(improved)} of {format_count(judged, 'start')} were optimised, but "
-                "none "
+            text = join_messages(
+                [
+                    compose("function-no-start-passes", improved=improved, count=judged),
+                    self.describe_reasons().strip(),
+                ]
             )
-            text += f"satisfies all constraints.{self.describe_reasons()}"
         return self._build_result(self.problem.aim, False, text)
 
     def build_exact_result(self, proved: bool, method: str) -> FunctionResult:
@@ -414,20 +418,18 @@ class _FunctionLog(CandidateLog[FunctionDesign]):
         # A failed placement proves nothing about the linkage itself.
         unknown = _NUMERICAL_REASONS | (_PLACEMENT_REASONS if self.problem.fixed_pivots is None else set())
         complete = proved and not unknown & self.rejected.keys()
-        passed, of = len(self.passed), format_count(self.candidates, "real linkage")
-        text = (
-            f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all "
-            f"constraints.{self.describe_reasons()}"
-        )
+        text = [
+            compose("function-real-linkages-pass", passed=len(self.passed), count=self.candidates),
+            self.describe_reasons().strip(),
+        ]
         if not self.passed:
-            text += " These are all, so no design exists." if complete else " Others may exist."
-        return self._build_result(method, complete, text)
+            text.append(compose("function-no-design-exists" if complete else "function-others-may-exist"))
+        return self._build_result(method, complete, join_messages(text))
 
     def build_search_result(self, method: str) -> FunctionResult:
         """Build the result of a search."""
-        among = format_count(self.candidates, "candidate")
-        text = f"{format_count(len(self.passed), 'design')} found among {among}.{self.describe_reasons()}"
-        return self._build_result(method, False, text)
+        found = compose("function-designs-among-candidates", found=len(self.passed), count=self.candidates)
+        return self._build_result(method, False, join_messages([found, self.describe_reasons().strip()]))
 
     def _build_result(self, method: str, complete: bool, summary: str) -> FunctionResult:
         return FunctionResult(

@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.task import make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
@@ -22,9 +23,7 @@ from synthesis.kinds.function.sixbar.solver import SixbarSearch
 from synthesis.kinds.function.statement.mechanism_types import SIXBARS, list_unsupported
 from synthesis.kinds.function.verification.verify import verify_function
 from synthesis.kinds.function.watt_2_nine_pairs import solve_nine_pairs
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress, scale_progress
-from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from synthesis.model.linkage.type_choice import (
     describe_skipped_sixbars,
     describe_unclassed,
@@ -83,7 +82,7 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
 def _solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve for the sixbars that support the given constraints; report the types that do not."""
     found, remark = solve_sixbars(problem.sixbar_problem, progress), _describe_dropped(problem)
-    return found.model_copy(update={"summary": f"{found.summary} {remark}"}) if remark else found
+    return found.model_copy(update={"summary": join_messages([found.summary, remark])})
 
 
 def _describe_dropped(problem: FunctionProblem) -> str:
@@ -118,7 +117,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
             name, rng, scale_progress(progress, 0.9 * n / len(types), 0.9 * (n + 1) / len(types))
         )
     found.sort(key=lambda one: one.error)
-    progress(0.9, f"verifying the best of {search.weighed} sixbars")
+    progress(0.9, compose("function-verifying-best-sixbars", count=search.weighed))
 
     def verify_sixbar(n: int) -> FunctionDesign | None:
         try:
@@ -130,11 +129,11 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
     rows = range(min(len(found), ATTEMPTS_PER_DESIGN * problem.max_designs))
     tried = sifting.verify_candidates(rows, verify_sixbar, enough=problem.max_designs)
     sifting.reject(OUTRANKED_REASON, search.weighed - tried)
-    progress(1.0, "verified")
+    progress(1.0, compose("function-verified"))
     return FunctionResult(
         designs=sifting.select_designs(partial(rank_by_error, problem)),
         search=sifting.build_search("sixbar_search"),
-        summary=_describe_result(problem, sifting) + search.remark,
+        summary=join_messages([_describe_result(problem, sifting), search.remark]),
     )
 
 
@@ -153,8 +152,12 @@ def merge_type_results(problem: FunctionProblem, simple: FunctionResult, found: 
         better = [design for design in better if design.metrics.min_transmission_angle > angle]
     offered = merge_alternatives(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
-    remark = _describe_comparison(problem, sound, plain, sixbars or better) + (
-        describe_alternatives(problem, len(offered), len(sixbars)) if plain and better else ""
+    remark = join_messages(
+        [
+            _describe_comparison(problem, sound, plain, sixbars or better),
+            describe_alternatives(problem, len(offered), len(sixbars)) if plain and better else "",
+        ],
+        "",
     )
     return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, order)
 
@@ -164,31 +167,38 @@ def _describe_comparison(
 ) -> str:
     """Describe how the types compare; the sentence is continued by the caller if there are designs of both kinds."""
     if not plain:
-        return "No fourbar was found, only sixbars." if better else "Neither a fourbar nor a sixbar was found."
+        return compose("function-only-sixbars-found" if better else "function-no-linkage-found")
     if not better:
-        what = "error" if sound else "transmission angle"
-        return f"No sixbar found clearly improves on the best fourbar's {what}."
+        return compose("function-no-smaller-error" if sound else "function-no-better-transmission")
     if not sound:
         angle = max(design.metrics.min_transmission_angle for design in plain)
-        return f"The best fourbar has a minimum transmission angle of only {angle:.1f}°; sixbars exceed it"
+        return compose("function-sixbars-transmit-better", angle=f"{angle:.1f}")
     share = min(get_error(problem, one) for one in better) / min(get_error(problem, one) for one in sound)
-    return f"Sixbars reduce the error to {100.0 * share:.2g} % of the best fourbar's"
+    return compose("function-sixbars-reduce-error", share=f"{100.0 * share:.2g}")
 
 
 def _describe_result(problem: FunctionProblem, sifting: CandidateLog[FunctionDesign]) -> str:
-    weighed = f"{format_count(sifting.candidates, 'sixbar was', 'sixbars were')} sampled"
+    sampled = sifting.candidates
     if not sifting.passed:
-        return (
-            f"{weighed}; no design found satisfies all constraints.{sifting.describe_reasons()} "
-            "This does not prove that none exists."
+        return join_messages(
+            [
+                compose("function-no-sixbar-passes", sampled=sampled),
+                sifting.describe_reasons().strip(),
+                compose("function-nothing-proved"),
+            ]
         )
     best = select_best(sifting.passed, partial(get_error, problem))
     error = best.structural_error
     if problem.aim == "precision":
-        count = len(sifting.passed)
-        return f"{weighed}; {format_count(count, 'design meets', 'distinct designs meet')} all pairs."
+        return compose("function-sixbars-meet-pairs", sampled=sampled, count=len(sifting.passed))
     if problem.aim == "least_squares":
-        text = f"Smallest root-mean-square structural error found: {error.rms:.4g}° (maximum {error.max:.4g}°)"
-    else:
-        text = f"Smallest maximum structural error found: {error.max:.4g}°"
-    return f"{weighed}. {text}, by a {SIXBAR_NAMES[best.mechanism.type]}. A better linkage may exist."
+        return compose(
+            "function-sixbar-with-least-rms",
+            sampled=sampled,
+            rms=f"{error.rms:.4g}",
+            maximum=f"{error.max:.4g}",
+            type=best.mechanism.type,
+        )
+    return compose(
+        "function-sixbar-with-least-maximum", sampled=sampled, maximum=f"{error.max:.4g}", type=best.mechanism.type
+    )

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex
+from kinematics.message import compose, join_messages
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.task import FunctionTask, make_function_task
 from synthesis.kinds.function.nine_pairs.continuation import find_all_watts
@@ -27,7 +28,6 @@ from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
 from synthesis.kinds.function.sixbar.nine_pair_starts import make_sixbar
 from synthesis.kinds.function.sixbar.solver import EXACT_TOLERANCE, MAX_EXACT_STEPS, make_sample_points
 from synthesis.kinds.function.verification.verify import verify_function
-from synthesis.model.counting import choose_word, format_integer
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog, report_candidates
 
@@ -83,7 +83,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
             done = round(share * SOLUTION_COUNT)
             progress(
                 CONTINUATION_SHARE * (n + share) / len(choices),
-                f"{format_integer(done)} of {format_integer(SOLUTION_COUNT)} paths followed",
+                compose("function-paths-followed", done=done, count=SOLUTION_COUNT),
             )
 
         watts = find_all_watts(k * task.inputs, l_ * task.outputs, rng, report_share)
@@ -104,24 +104,28 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
         report_candidates(kept, progress, (CONTINUATION_SHARE, 1.0), "function-progress-sixbars"),
         verify_sixbar,
     )
-    progress(1.0, "verified")
+    progress(1.0, compose("function-verified"))
     # Rejections by size or placement could be avoided by other placements, which were not searched.
     complete = complete and sifting.rejected.keys() <= PROVING_REASONS
     # Added after the check of completeness: the reasons of the screening are proofs of their own.
     for reason in reasons_before:
         sifting.reject(reason)
-    counts = f"{format_integer(computed)} of {format_integer(SOLUTION_COUNT * len(choices))}"
-    text = (
-        f"{counts} Watt II solutions for the nine pairs were computed, real and complex; {format_integer(real)} "
-        f"{choose_word(real, 'is', 'are')} real, and {format_integer(sifting.accepted)} of these "
-        f"{choose_word(sifting.accepted, 'satisfies', 'satisfy')} all constraints.{sifting.describe_reasons()}"
-    )
+    text = [
+        compose(
+            "function-watts-computed",
+            computed=computed,
+            count=SOLUTION_COUNT * len(choices),
+            real=real,
+            accepted=sifting.accepted,
+        ),
+        sifting.describe_reasons().strip(),
+    ]
     if not sifting.passed:
-        text += " These are all, so no design of this type exists." if complete else " Others may exist."
+        text.append(compose("function-no-such-type-exists" if complete else "function-others-may-exist"))
     return FunctionResult(
         designs=sifting.select_designs(partial(rank_by_error, problem)),
         search=sifting.build_search("nine_pair_continuation", complete=complete),
-        summary=text,
+        summary=join_messages(text),
     )
 
 

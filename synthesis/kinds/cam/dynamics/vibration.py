@@ -14,6 +14,7 @@ from kinematics.cam.dynamics import RunningCam
 from kinematics.cam.motion.program import TURN
 from kinematics.cam.motion.segments import Segment
 from kinematics.cam.response import FollowerTrain, Response
+from kinematics.message import compose
 from synthesis.kinds.cam.design import TrainVibration
 from synthesis.kinds.cam.follower_loads import get_arm_length
 from synthesis.kinds.cam.problem import CamProblem
@@ -62,14 +63,9 @@ def compute_train_vibration(problem: CamProblem, running: RunningCam) -> tuple[T
     )
     warning = None
     if response.too_slow:
-        warning = (
-            f"the natural frequency of the follower train is only {response.frequency_ratio:.3g} times the cam's speed "
-            f"(period over the shortest move's time: {tau:.3g}); the follower will vibrate"
-        )
+        warning = compose("cam-train-too-soft", ratio=f"{response.frequency_ratio:.3g}", periods=f"{tau:.3g}")
     if response.frequency_ratio >= MIN_FREQUENCY_RATIO and response.resonant:
-        warning = (
-            "a harmonic of the cam's speed coincides with the natural frequency of the follower train: it resonates"
-        )
+        warning = compose("cam-train-resonates")
     return found, warning
 
 

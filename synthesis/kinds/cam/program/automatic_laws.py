@@ -15,6 +15,7 @@ from kinematics.cam.motion.laws import LAWS
 from kinematics.cam.motion.pieces import Motion
 from kinematics.cam.motion.segments import Condition as PolynomialCondition
 from kinematics.cam.motion.segments import Segment, build_law_segment, build_polynomial_segment
+from kinematics.message import compose
 from synthesis.kinds.cam.follower_loads import build_follower_load
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.program.criterion import DERIVATIVE_ORDERS, compute_extra_preload
@@ -104,7 +105,7 @@ def _choose_row(
                     following[key] = total, (*chosen, (name, segment))
         paths = {(key[0] * unit, key[1] * unit / angle): value for key, value in following.items()}
         if not paths:
-            return f"no law fits segment {k} within the limits on velocity, acceleration and jerk"
+            return compose("cam-no-law-fits", segment=k)
     _, chosen = min(paths.values(), key=lambda path: path[0])
     for k, (name, segment) in zip(row, chosen, strict=True):
         segments[k], names[k] = segment, name

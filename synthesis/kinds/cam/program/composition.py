@@ -27,6 +27,7 @@ from kinematics.cam.motion.segments import (
     build_law_segment,
     build_polynomial_segment,
 )
+from kinematics.message import compose
 from synthesis.kinds.cam.follower_loads import build_follower_load
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.program.automatic_laws import choose_laws
@@ -82,8 +83,12 @@ class _GridProgress:
         def report_grid(steps: int) -> None:
             # Every run is solved on a coarse grid and then on a fine grid; both count as equal effort.
             share = (run + (0.5 if steps > GRID_STEP_COUNTS[0] else 0.0)) / self.runs
-            which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
-            self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
+            self.progress(
+                start + (end - start) * share,
+                compose("cam-optimizing-motion-of-several", number=run + 1, count=self.runs, steps=steps)
+                if self.runs > 1
+                else compose("cam-optimizing-motion", steps=steps),
+            )
 
         return report_grid
 
@@ -111,7 +116,7 @@ class NoProgram:
     proven: bool
 
 
-def compose(
+def compose_program(
     problem: CamProblem,
     grids: Sequence[int] = GRID_STEP_COUNTS,
     progress: Progress = ignore_progress,
@@ -293,8 +298,8 @@ def _solve_runs(
     for each in results:
         if isinstance(each, NoMotion):
             if each.factor is None:
-                return NoProgram("no optimal motion was found within the limits and conditions", proven=False)
-            reason = f"no motion keeps the limits; they must be at least {each.factor:.6g} times as large"
+                return NoProgram(compose("cam-no-optimal-motion"), proven=False)
+            reason = compose("cam-motion-limits-too-tight", factor=f"{each.factor:.6g}")
             return NoProgram(reason, proven=True)
         best.append(each)
     # Runs and motions are in the same order.
@@ -364,16 +369,16 @@ def _bound_criterion(
     """Return the lower bound of the criterion over the whole program, and the motions for which it holds."""
     if not best:
         automatic = any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
-        return None, "the best of the named laws" if automatic else "the laws are given"
-    scope = "all motions in the optimal segments, with the other segments unchanged"
+        return None, compose("cam-scope-named-laws" if automatic else "cam-scope-given-laws")
+    scope = compose("cam-scope-all-motions")
     cap = next((each.cap for each in best if each.cap is not None), None)
     if cap is not None:
-        name = {2: "acceleration", 3: "jerk", 4: "fourth derivative"}[cap[0]]
-        scope += f", with a peak {name} of at most {cap[1]:.6g}"
+        name = {2: "acceleration", 3: "jerk", 4: "ping"}[cap[0]]
+        scope = compose("cam-scope-below-peak", scope=scope, derivative=name, peak=f"{cap[1]:.6g}")
     name = problem.minimize
     kind, _, of = name.partition("_")
     if of == "torque" and (problem.limits.acceleration is not None or problem.limits.jerk is not None):
-        scope += ", without limits on acceleration and jerk; with them the minimum is higher than the bound"
+        scope = compose("cam-scope-without-limits", scope=scope)
     if name in ("size", "peak_contact_force"):
         return best[0].bound, scope
     open_ = {k for row in rows for k in row}

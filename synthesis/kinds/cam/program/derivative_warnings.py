@@ -8,8 +8,11 @@ Table 2-2), which has no jump in its acceleration.
 
 from __future__ import annotations
 
+from functools import reduce
+
 from kinematics.cam.motion.laws import LAWS
 from kinematics.cam.motion.segments import build_law_segment
+from kinematics.message import compose, make_sentence
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.program.composition import Composition
 from synthesis.kinds.cam.statement.segments import Move
@@ -49,8 +52,18 @@ def describe_excesses(problem: CamProblem, composed: Composition) -> str | None:
     found = find_excesses(problem, composed)
     if not found:
         return None
-    excesses = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
+    excesses = _join_pairs(
+        "cam-peaks-and-peaks",
+        [compose("cam-peak-high", derivative=name, times=f"{times:.3g}") for name, times in found.items()],
+    )
     # Recommend a limit only if none is given yet.
     unlimited = [name for name in found if getattr(problem.limits, name) is None]
-    advice = f"; set a limit on {' or '.join(unlimited)}" if unlimited else ""
-    return f"{excesses.capitalize()} that of a {PLAIN_LAW} motion of the same lift and angle{advice}."
+    if not unlimited:
+        return make_sentence(compose("cam-peaks-cost", excesses=excesses))
+    limits = _join_pairs("cam-limits-or-limits", [compose("cam-derivative", derivative=name) for name in unlimited])
+    return make_sentence(compose("cam-peaks-need-limits", excesses=excesses, limits=limits))
+
+
+def _join_pairs(message_id: str, parts: list[str]) -> str:
+    """Join parts of a sentence by a message that joins two."""
+    return reduce(lambda first, second: compose(message_id, first=first, second=second), parts)

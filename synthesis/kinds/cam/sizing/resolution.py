@@ -8,6 +8,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 
@@ -61,7 +62,7 @@ def resolve_profile(
         if finer is None or len(finer) > MAX_POINTS:
             break
         angle = finer
-        progress(0.8, f"verifying with {len(angle)} points")
+        progress(0.8, compose("cam-verifying-with-points", count=len(angle)))
         mechanism = make(angle)
         verification, measured = verify(mechanism)
     return mechanism, verification, measured

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import FORCE, MASS, ROTATIONAL_SPEED, STIFFNESS
 from synthesis.model.problem import (
     Contradiction,
@@ -150,32 +151,30 @@ def find_follower_contradictions(follower: Follower) -> list[Contradiction]:
     for name in ("roller_radius", "pivot_distance"):
         stated = getattr(follower, name, None)
         if isinstance(stated, LengthRange) and stated.min >= stated.max:
-            contradictions.append(Contradiction(f"/follower/{name}/max", "must be above min"))
+            contradictions.append(Contradiction(f"/follower/{name}/max", compose("cam-max-not-above-min")))
     if isinstance(follower, TranslatingRoller | OscillatingRoller) and follower.prime_radius is not None:
         radius = follower.roller_radius
         least = radius.min if isinstance(radius, LengthRange) else radius
         if follower.prime_radius <= least:
-            contradictions.append(Contradiction("/follower/prime_radius", "must be larger than the roller"))
+            contradictions.append(Contradiction("/follower/prime_radius", compose("cam-prime-radius-within-roller")))
         if isinstance(follower, TranslatingRoller):
             offset = follower.offset
             if offset == "free":
-                detail = "a free offset needs a free prime radius; omit the prime radius or give the offset"
+                detail = compose("cam-free-offset-needs-free-radius")
                 contradictions.append(Contradiction("/follower/offset", detail))
             elif abs(offset) >= follower.prime_radius:
-                contradictions.append(Contradiction("/follower/offset", "must be less than the prime radius"))
+                contradictions.append(Contradiction("/follower/offset", compose("cam-offset-too-large")))
         elif isinstance(follower.pivot_distance, LengthRange):
-            detail = "a free pivot needs a free prime radius; omit the prime radius or give the pivot distance"
+            detail = compose("cam-free-pivot-needs-free-radius")
             contradictions.append(Contradiction("/follower/pivot_distance", detail))
         else:
             arm, pivot = follower.arm, follower.pivot_distance
             # The cam's centre, the pivot and the roller's centre must form a triangle.
             if not abs(pivot - arm) < follower.prime_radius < pivot + arm:
-                contradictions.append(
-                    Contradiction("/follower/prime_radius", "arm and pivot distance cannot reach the prime radius")
-                )
+                contradictions.append(Contradiction("/follower/prime_radius", compose("cam-arm-does-not-reach")))
     if isinstance(follower, OscillatingFlat):
         # At its lowest position the face must pass between cam and pivot.
         reach = (follower.base_radius or 0.0) + follower.face_offset
         if reach >= follower.pivot_distance:
-            contradictions.append(Contradiction("/follower/pivot_distance", "must exceed base radius and face offset"))
+            contradictions.append(Contradiction("/follower/pivot_distance", compose("cam-pivot-too-near")))
     return contradictions

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from kinematics.message import compose
 from synthesis.kinds.cam.statement.segment_ends import (
     MIRROR_LAWS,
     Conditions,
@@ -128,14 +129,14 @@ class ProgramStatement:
             where = f"/segments/{k}"
             if isinstance(segment, Move):
                 if segment.lift is None and segment.motion != "return":
-                    contradictions.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
-                elif segment.lift is None and heights[k][0] <= 0.0:
                     contradictions.append(
-                        Contradiction(f"{where}/lift", "the follower is already at zero; give a lift")
+                        Contradiction(f"{where}/lift", compose("cam-lift-missing", motion=segment.motion))
                     )
+                elif segment.lift is None and heights[k][0] <= 0.0:
+                    contradictions.append(Contradiction(f"{where}/lift", compose("cam-return-from-zero")))
                 for name in ("conditions", "bands"):
                     if getattr(segment, name) and segment.law != "optimal":
-                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can have them"))
+                        contradictions.append(Contradiction(f"{where}/{name}", compose("cam-only-for-optimal-motion")))
                 for n, band in enumerate(segment.bands):
                     contradictions += _find_band_errors(f"{where}/bands/{n}", band, segment.angle)
             if isinstance(segment, Move | Polynomial):
@@ -144,16 +145,16 @@ class ProgramStatement:
                     # contradictory.
                     inner = isinstance(segment, Move)
                     if condition.angle > segment.angle or (inner and condition.angle in (0.0, segment.angle)):
-                        detail = f"must lie within the segment's {segment.angle:g} degrees"
+                        detail = compose("cam-condition-outside-segment", angle=f"{segment.angle:g}")
                         contradictions.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
                     if not condition.values():
-                        contradictions.append(Contradiction(f"{where}/conditions/{n}", "is empty; give s, v, a or j"))
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}", compose("cam-condition-empty")))
             if isinstance(segment, Polynomial) and not contradictions:
                 conditions = self.convert_conditions(segment)
                 if compute_polynomial_ends(math.radians(segment.angle), conditions) is None:
-                    contradictions.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
+                    contradictions.append(Contradiction(f"{where}/conditions", compose("cam-conditions-dependent")))
         if not contradictions and not any(_has_motion(segment) for segment in self.segments):
-            contradictions.append(Contradiction("/segments", "the follower never moves; add a rise"))
+            contradictions.append(Contradiction("/segments", compose("cam-follower-rests")))
         return contradictions
 
     def find_joint_contradictions(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
@@ -163,7 +164,7 @@ class ProgramStatement:
     def _check_turn(self) -> list[Contradiction]:
         total = math.fsum(segment.angle for segment in self.segments)
         if abs(total - 360.0) > TURN_TOLERANCE:
-            return [Contradiction("/segments", f"the angles add up to {total:.12g} degrees; they must make one turn")]
+            return [Contradiction("/segments", compose("cam-angles-not-one-turn", total=f"{total:.12g}"))]
         return []
 
     def _compute_scale(self) -> float:
@@ -195,23 +196,27 @@ class ProgramStatement:
         for k, segment in enumerate(self.segments):
             n = (k + 1) % len(self.segments)
             following = self.segments[n]
-            joint = f"where segment {n} ({following.motion}) follows segment {k} ({segment.motion})"
+            joint: dict[str, str | int] = {
+                "segment": k,
+                "motion": segment.motion,
+                "following": n,
+                "following_motion": following.motion,
+            }
             gap = heights[n][0] - heights[k][1]
             if abs(gap) > JUMP_TOLERANCE * self._compute_scale():
-                hint = "; the program must end where it began" if n == 0 else ""
                 gap /= self.displacement_unit
-                contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
+                fault = "cam-program-does-not-close" if n == 0 else "cam-displacement-jumps"
+                contradictions.append(Contradiction(f"/segments/{n}", compose(fault, jump=f"{gap:.6g}", **joint)))
                 continue
             velocity, acceleration = self._compute_jumps(k, ends)
-            reason = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
             # At a downward jump, or in a groove, the roller would have to turn at an edge: contact cannot be kept.
-            if velocity < 0.0 or (velocity and grooved):
-                reason = "for which the cam would need an edge that no follower can track; choose laws that join"
-            elif accept_discontinuity:
+            needs_edge = velocity < 0.0 or bool(velocity and grooved)
+            if accept_discontinuity and not needs_edge:
                 continue
+            fault = "cam-joint-needs-edge" if needs_edge else "cam-joint-breaks-fundamental-law"
             for name, jump in (("velocity", velocity), ("acceleration", acceleration)):
                 if jump:
-                    detail = f"{name} jumps by {jump:.6g} {joint}, {reason}"
+                    detail = compose(fault, derivative=name, jump=f"{jump:.6g}", **joint)
                     contradictions.append(Contradiction(f"/segments/{n}", detail))
                     break
         if not contradictions and not accept_discontinuity:
@@ -223,7 +228,7 @@ class ProgramStatement:
         return [
             Contradiction(
                 f"/segments/{k}/law",
-                f"the acceleration of {segment.law} jumps; choose another law or set accept_discontinuity",
+                compose("cam-law-jumps", law=segment.law),
             )
             for k, segment in enumerate(self.segments)
             if isinstance(segment, Move) and segment.law == "constant_acceleration"
@@ -232,11 +237,11 @@ class ProgramStatement:
 
 def _find_band_errors(where: str, band: DisplacementBand, angle: float) -> list[Contradiction]:
     if band.lower is None and band.upper is None:
-        return [Contradiction(where, "has no bound; give lower or upper")]
+        return [Contradiction(where, compose("cam-band-unbounded"))]
     if not band.start < band.end <= angle:
-        return [Contradiction(f"{where}/end", f"must be after start and within the segment's {angle:g} degrees")]
+        return [Contradiction(f"{where}/end", compose("cam-band-end-outside", angle=f"{angle:g}"))]
     if band.lower is not None and band.upper is not None and band.lower > band.upper:
-        return [Contradiction(f"{where}/upper", "must not be below lower")]
+        return [Contradiction(f"{where}/upper", compose("cam-band-empty"))]
     return []
 
 

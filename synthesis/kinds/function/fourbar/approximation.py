@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.function.fourbar.constraints import GeneratorLimits
 from synthesis.kinds.function.fourbar.error_levelling import equalize_errors
 from synthesis.kinds.function.fourbar.minimax_descent import Approximation, Descent
@@ -75,7 +76,7 @@ def find_approximations(
     limits = GeneratorLimits(task, least)
     descent = GeneratorDescent(task, limits)
     pool, signs = _find_starts(task, limits, rng)
-    progress(0.2, f"{len(pool)} starts")
+    progress(0.2, compose("function-starts", count=len(pool)))
     if not len(pool):
         return Approximations([], 0, 0)
     nearest = np.argsort(descent.compute_errors(pool, signs))[:LEVELLED_COUNT]
@@ -94,13 +95,13 @@ def find_approximations(
     improve = descent.minimax if task.problem.aim == "minimax" else descent.least_squares
     rough = []
     for n, j in enumerate(chosen):
-        progress(0.2 + 0.3 * n / len(chosen), f"start {n + 1} of {len(chosen)}")
+        progress(0.2 + 0.3 * n / len(chosen), compose("function-improving-start", number=n + 1, count=len(chosen)))
         rough.append(improve(pool[j], float(signs[j]), effort.first_rounds))
     # Only a few steps decide which starts are continued.
     rough.sort(key=lambda optimum: optimum.error)
     optima: list[Approximation] = []
     for n, start in enumerate(rough[: effort.kept]):
-        progress(0.5 + 0.4 * n / effort.kept, f"candidate {n + 1}")
+        progress(0.5 + 0.4 * n / effort.kept, compose("function-improving-candidate", number=n + 1))
         refined = improve(start.generator, start.sign, effort.rounds)
         if not any(_is_same(refined, other) for other in optima):
             optima.append(refined)

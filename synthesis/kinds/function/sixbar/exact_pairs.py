@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.function.sixbar.descents import Descents, SixbarCandidate, select_best, select_best_starts
 from synthesis.kinds.function.sixbar.starts import Starts
 from synthesis.kinds.function.statement.mechanism_types import Sixbar
@@ -103,7 +104,7 @@ class PairSearch:
         """Find the best sixbars from starts of a type, at most ``most``."""
         effort = EFFORTS[name]
         begun = self._first.descend_all(name, starts, FIRST_WEIGHT, MAX_FIRST_STEPS, FIRST_TOLERANCE)
-        progress(0.3, f"following the best of {len(starts.at)} sixbars of type {name}")
+        progress(0.3, compose("function-following-sixbars", count=len(starts.at), type=name))
         found = select_best_starts(name, *begun, effort.followed[0])
         # Two stages at few pairs preserve the ranking better than a direct step to all pairs.
         for descents, (_, steps), (kept, _) in (
@@ -112,7 +113,7 @@ class PairSearch:
             (self._all, effort.followed_to_the_end, (most, 0)),
         ):
             found = select_best([descents.follow_from(one, LIMIT_WEIGHT, steps) for one in found], kept)
-        progress(0.7, f"improving the best of {len(starts.at)} sixbars of type {name}")
+        progress(0.7, compose("function-improving-sixbars", count=len(starts.at), type=name))
         return self._run_perturbations(found, effort.moves, most, rng)
 
     def _run_perturbations(

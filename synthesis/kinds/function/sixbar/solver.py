@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.function.fourbar.minimax_descent import Descent
 from synthesis.kinds.function.fourbar.task import FunctionTask
 from synthesis.kinds.function.nine_pairs.system import PAIR_COUNT, SOLUTION_COUNT
@@ -38,7 +39,6 @@ from synthesis.kinds.function.sixbar.kernels import IS_USED, K, L
 from synthesis.kinds.function.sixbar.nine_pair_starts import find_sixbars_through_nine
 from synthesis.kinds.function.sixbar.starts import Starts, sample_starts
 from synthesis.kinds.function.statement.mechanism_types import Sixbar
-from synthesis.model.counting import choose_word, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE
 
@@ -190,7 +190,7 @@ class SixbarSearch:
             TYPE_NUMBERS[name], self.task, self.places.points[0], self.places.points[1], count, rng, wider=wider
         )
         self.weighed += len(drawn.at)
-        progress(0.1, f"{len(drawn.at)} sixbars of type {name}")
+        progress(0.1, compose("function-sixbars-of-type", count=len(drawn.at), type=name))
         return drawn
 
     def _search_pairs(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
@@ -216,11 +216,11 @@ class SixbarSearch:
         """Fit the closest of all Watt II sixbars through nine of the pairs to all pairs."""
 
         def report_share(share: float) -> None:
-            done = (
-                f"{format_integer(round(share * SOLUTION_COUNT))} of {format_integer(SOLUTION_COUNT)} paths to nine "
-                "of the pairs followed"
+            done = round(share * SOLUTION_COUNT)
+            progress(
+                SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share,
+                compose("function-paths-to-nine-followed", done=done, count=SOLUTION_COUNT),
             )
-            progress(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share, done)
 
         (k, _), (l_, _) = (choices[0] for choices in self.task.scales)
         through = find_sixbars_through_nine(self.places.dense, k, l_, rng, report_share)
@@ -236,14 +236,13 @@ class SixbarSearch:
             MAX_FOLLOWED,
         )
         if through.complete:
-            nine = "the nine pairs" if self.places.dense.shape[1] == PAIR_COUNT else "nine of the pairs"
             met = sum(self._compute_max_error(one) < PAIR_TOLERANCE for one in reached)
-            # The list was cut off at this number, so more may exist.
-            at_least = "at least " if met == MAX_FOLLOWED else ""
-            which = f"{at_least}{met} of them {choose_word(met, 'meets', 'meet')}" if met else "none of them meets"
-            self.remark = (
-                f" All {format_integer(SOLUTION_COUNT)} Watt II solutions for {nine}, real and complex, were computed; "
-                f"{which} all pairs to a millionth of a degree in one assembly."
+            self.remark = compose(
+                # The list was cut off at this number, so more may exist.
+                "function-many-watts-meet-pairs" if met == MAX_FOLLOWED else "function-watts-meet-pairs",
+                count=SOLUTION_COUNT,
+                pairs="nine" if self.places.dense.shape[1] == PAIR_COUNT else "more",
+                met=met,
             )
         return reached
 
@@ -260,7 +259,7 @@ class SixbarSearch:
                 one = descents.descend_one(one, weight, MAX_STEPS, DECREASE_TOLERANCE)
             found.append(descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE) if self.exact else one)
         reached = select_best(found, effort.valleys)
-        progress(0.6, f"improving the best of {len(begun)} sixbars of type {name}")
+        progress(0.6, compose("function-improving-sixbars", count=len(begun), type=name))
         if self.exact:
             # With zero weight the valley is followed only by fits that have not met the pairs yet.
             return select_best([descents.follow_from(one, 0.0, 2 * VALLEY_STEPS) for one in reached], effort.valleys)

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.model.problem import Contradiction, Interval, Number, PositiveNumber, Statement
 
 CONSTANT_TOLERANCE = 1e-9
@@ -127,14 +128,14 @@ class FunctionStatement(Statement):
                 return
             for k, (one, other) in enumerate(zip(self.points, self.points[1:], strict=False), start=1):
                 if not other.x > one.x:
-                    yield Contradiction(f"/points/{k}/x", "x must rise from row to row of a table")
+                    yield Contradiction(f"/points/{k}/x", compose("function-table-not-rising"))
                     return
             low, high = self.interval
             if low < self.points[0].x or high > self.points[-1].x:
-                yield Contradiction("/x", "the table does not cover this interval")
+                yield Contradiction("/x", compose("function-table-too-short"))
                 return
         elif self.x is None:
-            yield Contradiction("/x", "give the interval of x")
+            yield Contradiction("/x", compose("function-interval-missing"))
             return
         poles = list(self._find_poles())
         if poles or (self.name == "power" and self.exponent is None):
@@ -142,27 +143,27 @@ class FunctionStatement(Statement):
             return
         low, high = self.interval
         if high - low <= 1e-12 * max(abs(low), abs(high)):
-            yield Contradiction("/x", "the interval is too short relative to its values")
+            yield Contradiction("/x", compose("function-interval-too-short"))
             return
         with np.errstate(all="ignore"):
             least, greatest = self.find_extent()
         if not (math.isfinite(least) and math.isfinite(greatest)):
-            yield Contradiction("/x", f"{self.name} is not finite over this interval")
+            yield Contradiction("/x", compose("function-values-infinite", function=self.name))
         elif greatest - least <= CONSTANT_TOLERANCE * max(abs(least), abs(greatest)):
-            yield Contradiction("/x", f"{self.name} is constant over this interval, to numerical precision")
+            yield Contradiction("/x", compose("function-values-constant", function=self.name))
 
     def _check_fields(self) -> Iterator[Contradiction]:
         for field, name in (("exponent", "power"), ("points", "table")):
             given = getattr(self, field) is not None
             if given != (self.name == name):
-                detail = f"applies only to {name}" if given else f"is required for {name}"
-                yield Contradiction(f"/{field}", detail)
+                fault = "function-field-unused" if given else "function-field-required"
+                yield Contradiction(f"/{field}", compose(fault, function=name))
         if self.base is not None and self.name not in ("exponential", "logarithm"):
-            yield Contradiction("/base", "applies only to exponential and logarithm")
+            yield Contradiction("/base", compose("function-base-unused"))
         if self.base == 1.0:
-            yield Contradiction("/base", "a base of 1 makes the function constant")
+            yield Contradiction("/base", compose("function-base-one"))
         if self.name == "power" and self.exponent == 0.0:
-            yield Contradiction("/exponent", "an exponent of 0 makes the function constant")
+            yield Contradiction("/exponent", compose("function-exponent-zero"))
 
     def _find_poles(self) -> Iterator[Contradiction]:
         """Yield errors for points of the interval where the function is undefined or unbounded."""
@@ -170,15 +171,15 @@ class FunctionStatement(Statement):
         near = POLE_TOLERANCE * max(abs(low), abs(high))
         touches_zero = low <= near and high >= -near
         if self.name == "logarithm" and low <= near:
-            yield Contradiction("/x", "the logarithm needs an interval above 0")
+            yield Contradiction("/x", compose("function-logarithm-of-zero"))
         elif self.name == "reciprocal" and touches_zero:
-            yield Contradiction("/x", "1/x is undefined at 0, which lies in the interval")
+            yield Contradiction("/x", compose("function-reciprocal-of-zero"))
         elif self.name == "tangent":
             first = math.ceil((low - 90.0) / 180.0 - POLE_TOLERANCE)
             if 90.0 + 180.0 * first <= high + 180.0 * POLE_TOLERANCE:
-                yield Contradiction("/x", f"the tangent is undefined at {90 + 180 * first}°, inside the interval")
+                yield Contradiction("/x", compose("function-tangent-undefined", angle=f"{90 + 180 * first}"))
         elif self.name == "power" and self.exponent is not None:
             if self.exponent < 0.0 and touches_zero:
-                yield Contradiction("/x", "a negative power is undefined at 0, which lies in the interval")
+                yield Contradiction("/x", compose("function-negative-power-of-zero"))
             elif low < 0.0 and self.exponent != round(self.exponent):
-                yield Contradiction("/x", "a non-integer exponent needs an interval without negative values")
+                yield Contradiction("/x", compose("function-power-of-negative"))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from kinematics.message import compose
 from synthesis.model.linkage.type_choice import (
     UNCLASSED_SIXBAR,
     Auto,
@@ -32,9 +33,9 @@ Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar],
 def list_unsupported(problem: FunctionProblem) -> Iterator[Contradiction]:
     """Yield the given fields that sixbars do not support."""
     if problem.slides:
-        yield Contradiction("/mechanism", "the output of sixbars rotates; remove them from mechanisms")
+        yield Contradiction("/mechanism", compose("function-sixbar-output-rotates"))
     if problem.has_given_zeros:
-        yield Contradiction("/zeros", "are measured from the ground line of a fourbar; leave them open for sixbars")
+        yield Contradiction("/zeros", compose("function-zeros-need-fourbar"))
     yield from find_unsupported_by_sixbars(problem)
 
 
@@ -44,9 +45,6 @@ def check_types(problem: FunctionProblem) -> list[Contradiction]:
     if stated is None or isinstance(stated, str):
         return []
     if ("slider_crank" in stated) != problem.slides or (problem.slides and set(stated) != {"slider_crank"}):
-        detail = (
-            "slider_crank has a length as output, all other types an angle: list it alone, and set mechanism to it too"
-        )
-        return [Contradiction("/mechanisms", detail)]
+        return [Contradiction("/mechanisms", compose("function-slider-crank-not-alone"))]
     unclassed = refuse_class(problem.constraints) if set(stated) == {UNCLASSED_SIXBAR} else []
     return [*unclassed, *find_sixbar_contradictions(stated, problem.sixbars, list_unsupported(problem))]

@@ -26,7 +26,7 @@ from synthesis.kinds.cam.profile import (
     read_points,
     refine_angles,
 )
-from synthesis.kinds.cam.program.composition import Composition, compose
+from synthesis.kinds.cam.program.composition import Composition, compose_program
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.oracles.cam_formulas import least_convex_radius, pressure_angle_extremes
@@ -198,7 +198,7 @@ def test_a_spike_of_the_acceleration_is_measured(follower: str, minimize: str, r
     problem = parse_problem(stated)
     (design,) = solve(problem).designs
     assert design.verification.passed
-    composed = compose(problem)
+    composed = compose_program(problem)
     assert isinstance(composed, Composition)
     cam = Cam(composed.program, build_core_follower(design.mechanism), design.mechanism.rotation)
     exact = least_convex_radius(cam) - cam.roller_radius

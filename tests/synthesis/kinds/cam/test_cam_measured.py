@@ -10,7 +10,7 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.kinds.cam.profile import build_cam_mechanism, choose_profile_angles
-from synthesis.kinds.cam.program.composition import compose
+from synthesis.kinds.cam.program.composition import compose_program
 from synthesis.kinds.cam.solver import _size_cam
 from synthesis.kinds.cam.verification.rates import PEAK_SLACK
 from synthesis.kinds.cam.verification.verify import verify
@@ -38,7 +38,7 @@ def problem(limits=None, conditions=(), bands=(), **changes):
 
 def made(stated):
     """The finished cam, and its exact program."""
-    program = compose(stated).program
+    program = compose_program(stated).program
     cam, _ = _size_cam(stated, program)
     return build_cam_mechanism(cam, choose_profile_angles(program, cam.profile, cam.roller_radius, 1440)), program
 
@@ -149,7 +149,7 @@ def test_a_band_that_is_left_is_found():
 @pytest.mark.parametrize("continuity", ["acceleration", "jerk"])
 def test_a_stated_jerk_is_a_condition_like_others(continuity):
     stated = problem(conditions=[{"angle": 40.0, "j": 3.0}], continuity=continuity)
-    composed = compose(stated)
+    composed = compose_program(stated)
     assert float(composed.program.motion(math.radians(130.0)).j) == pytest.approx(3.0, abs=1e-6)
 
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import minimize
 
 from kinematics.cam.motion.laws import LAWS
-from synthesis.kinds.cam.program.composition import Composition, compose
+from synthesis.kinds.cam.program.composition import Composition, compose_program
 from synthesis.registry import list_examples, parse_problem
 
 BASE = list_examples("cam")[0]
@@ -30,7 +30,7 @@ def composed(minimize_what="peak_torque", **limits):
     segments[1]["lift"] = LIFT
     statement = copy.deepcopy(BASE) | {"segments": segments, "minimize": minimize_what}
     statement["limits"] = {"pressure_angle": 30.0} | limits
-    found = compose(parse_problem(statement))
+    found = compose_program(parse_problem(statement))
     assert isinstance(found, Composition)
     return found
 
