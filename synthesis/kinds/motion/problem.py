@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr
 
+from kinematics.message import compose
 from synthesis.kinds.motion.statement.contradictions import list_contradictions
 from synthesis.kinds.motion.statement.dyad_choices import DriverDyad, DyadChoices, GroundLine
 from synthesis.kinds.motion.statement.mechanism_types import (
@@ -242,9 +243,9 @@ class MotionProblem(LinkageProblem):
     def manufacture_task(self) -> ManufactureTask | str:
         """Manufacturing analysis: the targets are poses at free input angles; an error text if it is unsupported."""
         if self.driver is not None:
-            return "does not support linkages with a driver dyad; omit one of the two"
+            return compose("motion-manufacture-with-driver")
         if self.slider == "RP" or self.input_side.dyad == "PR":
-            return "supports only fourbars, and slider-cranks with the slider on the output side"
+            return compose("motion-manufacture-type-unsupported")
         return ManufactureTask(True, True, True, len(self.positions), self._grid_conflict)
 
     @property
@@ -253,8 +254,8 @@ class MotionProblem(LinkageProblem):
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
             for field in ("moving_pivot", "coupler_vector", "link_angle", "rotations"):
                 if getattr(side, field) is not None:
-                    return f"a grid cannot keep {name}.{field} at its given value; omit one of the two"
-        return "" if self.ground_line is None else "a grid cannot keep pivots on ground_line; omit one of the two"
+                    return compose("motion-grid-moves-choice", field=f"{name}.{field}")
+        return "" if self.ground_line is None else compose("motion-grid-moves-pivots")
 
     def build_required_targets(self, design: Any) -> RequiredTargets:
         """Return the positions and tolerances that a manufactured design must keep; angles in radians."""

@@ -16,6 +16,7 @@ from functools import partial
 
 import numpy as np
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.constrained.in_workspace import solve_in_workspace
 from synthesis.kinds.motion.constrained.sampled_poses import solve_sampled_poses
 from synthesis.kinds.motion.constrained.solver import continue_constrained, solve_with_tolerances
@@ -32,7 +33,6 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask
 from synthesis.kinds.motion.type_selection import solve_types
 from synthesis.model.answer import Search
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, return_true, scale_progress
 from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.model.linkage.conversion import to_point
@@ -57,9 +57,6 @@ is larger."""
 
 CURVE_SAMPLE_COUNT = 400
 """Number of returned samples of Burmester's curves, over all branches together."""
-
-UNPROVEN_REMARK = "This does not prove that none exists."
-"""Remark for an empty result if some dyad, or its rejection, is numerically uncertain."""
 
 _INPUT_INDEPENDENT_REASONS = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 """Rejection reasons that do not depend on which side is the input."""
@@ -121,7 +118,7 @@ def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for two to five positions that are met exactly."""
     if problem.slider is not None:
         return solve_sliders(problem, problem.slider, progress)
-    progress(0.0, "finding dyads")
+    progress(0.0, compose("motion-finding-dyads"))
     pairs = make_pairs(problem)
     if pairs.missing_side is not None:
         result = _report_missing_dyads(pairs, *pairs.missing_side)
@@ -129,14 +126,14 @@ def _solve_exact(problem: MotionProblem, progress: Progress) -> MotionResult:
         result = _search_pairs(pairs, progress)
     else:
         result = _verify_all_pairs(pairs, progress)
-        noun = "fourbar"
+        none_exists = "motion-no-fourbar-exists"
         if pairs.sliders:
             result = merge_sliders(problem, result, pairs.sliders, progress)
-            noun = "linkage"
+            none_exists = "motion-no-linkage-exists"
         if not any(design.verification.passed for design in result.designs):
             # Only an enumeration without doubtful roots or residuals proves that no linkage exists.
-            end = f"All are enumerated, so no {noun} exists." if result.search.complete else UNPROVEN_REMARK
-            result = result.model_copy(update={"summary": f"{result.summary} {end}"})
+            end = compose(none_exists if result.search.complete else "motion-unproven")
+            result = result.model_copy(update={"summary": join_messages([result.summary, end])})
     # Sliders are the last resort: fourbars are preferred in practice.
     return result if result.designs else try_sliders(problem, result, progress)
 
@@ -158,10 +155,11 @@ def _solve_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult
 
 
 def _report_missing_dyads(pairs: DyadPairs, side: str, cloud: Cloud) -> MotionResult:
-    """Build the result for a problem in which one side has no dyad at all, with the reason."""
+    """Build the result for a problem in which one side has no dyad at all, with the reason; ``side`` is its name."""
+    assert cloud.reason is not None
     method = "dyad_search" if pairs.is_sampled else "exact"
     search = CandidateLog[LinkageDesign](pairs.problem).build_search(method, complete=cloud.complete)
-    return _build_result(pairs, [], search, cloud.reason.replace("the side", f"the {side} side"))
+    return _build_result(pairs, [], search, cloud.reason.write(side))
 
 
 def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
@@ -175,7 +173,7 @@ def _verify_all_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
             if pairs.same_dyads and reasons[0] not in _INPUT_INDEPENDENT_REASONS:
                 reasons.append(sifting.insert_design(pairs.verify_pair((j, i))))
             sifting.count("" if "" in reasons else reasons[0])
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     complete = all(cloud.complete for cloud in pairs.clouds) and not NUMERICAL_REASONS & sifting.rejected.keys()
     designs = sifting.select_designs(partial(rank_designs, rank_by=pairs.problem.rank_by))
     search = sifting.build_search("exact", complete=complete)
@@ -186,7 +184,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
     """Screen all pairs and verify the best distinct ones."""
     problem = pairs.problem
     count = len(pairs.inputs.fixed) * len(pairs.outputs.fixed)
-    progress(0.1, f"screening {count} pairs of dyads")
+    progress(0.1, compose("motion-screening-dyad-pairs", count=count))
     limit = problem.constraints.min_transmission_angle
     # Lower the threshold only if the transmission angle is what rejects pairs: other constraints stay violated.
     for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
@@ -195,7 +193,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
         if screening.score.any() or "transmission_angle" not in screening.count_rejections():
             break
     sound = int(np.count_nonzero(screening.score))
-    progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
+    progress(0.8, compose("motion-verifying-best-pairs", count=sound))
     sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS | LENGTH_REASONS)
     sifting.rejected.update(screening.count_rejections())
     driven = sifting.verify_candidates(pairs.select_best(screening), pairs.verify_pair, enough=problem.max_designs)
@@ -212,7 +210,7 @@ def _search_pairs(pairs: DyadPairs, progress: Progress) -> MotionResult:
             sifting.insert_design(pairs.verify_pair(pair))
         # This second screening is only for failed designs; it must not change the list of passed ones.
         sifting.passed = passed
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     designs = sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by))
     return _build_result(pairs, designs, sifting.build_search("dyad_search"), _describe_search(sifting, sound))
 
@@ -222,56 +220,53 @@ def _build_result(pairs: DyadPairs, designs: list[LinkageDesign], search: Search
         designs=designs,
         curves=_sample_curves(pairs.task, designs),
         search=search,
-        summary=" ".join([summary, *_list_remarks(pairs)]),
+        summary=join_messages([summary, *_list_remarks(pairs)]),
     )
 
 
 def _describe_determined(pairs: DyadPairs, sifting: CandidateLog[LinkageDesign]) -> str:
     count, accepted = sifting.candidates, sifting.accepted
-    verb = choose_word(accepted, "carries", "carry")
-    linkages = format_count(count, "linkage")
-    if pairs.same_dyads:
+    if not pairs.same_dyads:
+        found = [compose("motion-linkages-with-choices", accepted=accepted, linkages=count)]
+    elif count:
         dyads = len(pairs.inputs.fixed)
-        text = f"{format_count(dyads, 'dyad')} with two pins {choose_word(dyads, 'gives', 'give')} {linkages}"
-        text += f"; {accepted} of them {verb} the body through all positions." if count else "."
+        found = [compose("motion-dyads-give-linkages", dyads=dyads, linkages=count, accepted=accepted)]
         if accepted and len(sifting.passed) > accepted:
-            text += f" Of these, {len(sifting.passed) - accepted} can be driven from either side."
+            found.append(compose("motion-driven-from-either-side", count=len(sifting.passed) - accepted))
     else:
-        text = f"{accepted} of {linkages} with the given choices {verb} the body through all positions."
-    return text + sifting.describe_reasons()
+        # Two dyads would make a pair.
+        found = [compose("motion-single-dyad")]
+    return join_messages([*found, sifting.describe_reasons().strip()])
 
 
 def _describe_search(sifting: CandidateLog[LinkageDesign], sound: int) -> str:
     if not sifting.passed:
-        return (
-            f"No design found: each of the {format_integer(sifting.candidates)} dyad pairs tried violates a constraint "
-            f"(rejected: {sifting.format_reasons(OUTRANKED_REASON)}). The search is not exhaustive, so a solution may "
-            "still exist."
-        )
+        reasons = sifting.format_reasons(OUTRANKED_REASON)
+        return compose("motion-no-pair-feasible", candidates=sifting.candidates, reasons=reasons)
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    text = (
-        f"{format_count(len(sifting.passed), 'design', 'designs')} verified, chosen from {format_integer(sound)} "
-        f"feasible dyad pairs ({format_integer(sifting.candidates)} tried). Best minimum transmission angle: "
-        f"{best:.1f}°."
-    )
+    found = [
+        compose(
+            "motion-designs-from-pairs", designs=len(sifting.passed), feasible=sound, candidates=sifting.candidates
+        ),
+        compose("motion-best-transmission-angle", angle=f"{best:.1f}"),
+    ]
     if best < USABLE_TRANSMISSION_ANGLES[0]:
-        text += f" No design found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
-    return text
+        found.append(compose("motion-angle-not-reached", angle=f"{USABLE_TRANSMISSION_ANGLES[0]:.0f}"))
+    return join_messages(found)
 
 
 def _list_remarks(pairs: DyadPairs) -> list[str]:
     """List remarks on the dyads that the linkages do not show, such as sliders (pivots at infinity)."""
     remarks = []
-    names = ("side",) if pairs.same_dyads else ("input side", "output side")
-    for name, cloud in zip(names, pairs.clouds, strict=False):
-        if cloud.remark:
-            remarks.append(cloud.remark.replace("the side", f"the {name}").strip())
+    sides = ("motion-side",) if pairs.same_dyads else ("motion-input-side", "motion-output-side")
+    for side, cloud in zip(sides, pairs.clouds, strict=False):
+        remarks += [remark.write(side) for remark in cloud.remarks]
         if cloud.sliders:
-            count = len(cloud.sliders)
-            kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
+            first, *others = sorted({slider.kind for slider in cloud.sliders})
+            # There are two kinds of sliders, PR and RP.
+            kinds = compose("motion-two-slider-kinds", first=first, second=others[0]) if others else first
             remarks.append(
-                f"{format_count(count, 'more dyad')} of the {name} {choose_word(count, 'has', 'have')} a pivot at "
-                f"infinity, that is, a slider ({kinds})."
+                compose("motion-dyads-are-sliders", count=len(cloud.sliders), side=compose(side), kinds=kinds)
             )
     return list(dict.fromkeys(remarks))
 

@@ -7,9 +7,11 @@ sixbars are searched, and those with a larger transmission angle are listed afte
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar.solver import solve_sixbars
@@ -66,7 +68,7 @@ def _solve_sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve for the sixbars that support the given constraints; report the types that do not."""
     found = solve_sixbars(problem, problem.sixbars, progress)
     remark = _describe_unclassed(problem)
-    return found.model_copy(update={"summary": f"{found.summary} {remark}"}) if remark else found
+    return found.model_copy(update={"summary": join_messages([found.summary, remark])}) if remark else found
 
 
 def _describe_unclassed(problem: MotionProblem) -> str:
@@ -88,25 +90,26 @@ def _merge_by_error(problem: MotionProblem, simple: MotionResult, found: MotionR
     plain, better = select_passing(simple.designs), select_passing(found.designs)
     sound = [design for design in plain if has_good_transmission(problem, design)]
     alone = [design for design in better if has_good_transmission(problem, design)]
-    if not plain:
-        remark = (
-            "No fourbar or slider-crank found satisfies all constraints; "
-            f"{'sixbars do' if better else 'neither does a sixbar'}."
-        )
-    elif not sound and alone:
-        better, remark = alone, "No fourbar or slider-crank found transmits well enough; sixbars do"
-    else:
+    only_sixbars_transmit = not sound and bool(alone)
+    least = min(map(get_rms_error, sound or plain), default=math.inf)
+    if plain and only_sixbars_transmit:
+        better = alone
+    elif plain:
         # Compare with simpler linkages that could be used; if none can, with all of them.
-        least = min(map(get_rms_error, sound or plain))
         better = [design for design in better if get_rms_error(design) <= ERROR_RATIO * least]
-        remark = f"The best fourbar or slider-crank has a root-mean-square residual of {100.0 * least:.3g} %"
-        remark += "; sixbars have at most half of that" if better else ", and no sixbar found has half of that."
     # Drop simpler linkages that transmit badly if sixbars can replace them.
     kept = (sound or plain) if better else plain
     offered = merge_alternatives(problem.max_designs, kept, better, make_ranking(problem))
     sixbars = [design for design in offered if any(design is one for one in better)]
-    if plain and better:
-        remark += describe_alternatives(problem, len(offered), len(sixbars))
+    listing = describe_alternatives(problem, len(offered), len(sixbars))
+    if not plain:
+        remark = compose("motion-only-sixbars-feasible" if better else "motion-no-type-feasible")
+    elif not better:
+        remark = compose("motion-no-sixbar-closer", error=f"{100.0 * least:.3g}")
+    elif only_sixbars_transmit:
+        remark = compose("motion-only-sixbars-transmit", listing=listing)
+    else:
+        remark = compose("motion-sixbars-closer", error=f"{100.0 * least:.3g}", listing=listing)
     return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, make_ranking(problem))
 
 
@@ -127,12 +130,11 @@ def merge_type_results(problem: MotionProblem, simple: MotionResult, found: Moti
     sixbars = [design for design in offered if any(design is one for one in better)]
     if not plain:
         remark = _describe_without_simple(problem, simple, better)
+    elif not better:
+        remark = compose("motion-no-sixbar-transmits-better", angle=f"{best:.1f}")
     else:
-        remark = f"The best fourbar or slider-crank has a minimum transmission angle of {best:.1f}°"
-        if not better:
-            remark += ", and no sixbar found exceeds it."
-        else:
-            remark += f"; sixbars exceed it{describe_alternatives(problem, len(offered), len(sixbars))}"
+        listing = describe_alternatives(problem, len(offered), len(sixbars))
+        remark = compose("motion-sixbars-transmit-better", angle=f"{best:.1f}", listing=listing)
     return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, order)
 
 
@@ -144,8 +146,7 @@ def _describe_without_simple(problem: MotionProblem, simple: MotionResult, sixba
         limits == (0.0, 0.0, 0.0) for limits in problem.limits
     )
     if every and exact and simple.search.complete:
-        return f"No fourbar or slider-crank solves this{'; sixbars do' if sixbars else ', and no sixbar was found'}."
+        return compose("motion-only-sixbars-exist" if sixbars else "motion-simple-types-impossible")
     if problem.mechanisms == "auto":
-        none = "No fourbar, slider-crank or sixbar was found."
-        return "No fourbar or slider-crank was found, only sixbars." if sixbars else none
-    return f"No linkage of the requested types was found{' except sixbars' if sixbars else ''}."
+        return compose("motion-only-sixbars-found" if sixbars else "motion-no-type-found")
+    return compose("motion-only-sixbars-of-requested-types" if sixbars else "motion-no-requested-type-found")

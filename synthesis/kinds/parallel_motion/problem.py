@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from kinematics.message import compose
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage.given_linkage import (
     AGREEMENT_TOLERANCE,
@@ -60,7 +61,7 @@ class SourceLinkage(Statement):
         if isinstance(given, dict) and given.get("type", "fourbar") != "fourbar":
             raise PydanticCustomError(
                 "no_fourbar",
-                "only a fourbar has the cognates that guide the body; for another mechanism give the path of its point",
+                compose("parallel_motion-no-cognates"),
             )
         return given
 
@@ -129,13 +130,13 @@ class ParallelMotionProblem(LinkageProblem):
         """Return contradictory requests: no curve or two, a point without a cognate, lengths that form no linkage."""
         found = list(self.find_contradicting_constraints())
         if (self.linkage is None) == (self.path is None):
-            found.append(Contradiction("/linkage", "give either a linkage or a path"))
+            found.append(Contradiction("/linkage", compose("parallel_motion-linkage-or-path")))
         if self.path is not None:
             found += [fault._replace(path=f"/path{fault.path}") for fault in self.path.find_contradictions()]
             # Both describe the finished mechanism.
             for name in ("layout", "space"):
                 if getattr(self.path, name) is not None:
-                    detail = "the sixbar is built, not the fourbar; give this next to the path"
+                    detail = compose("parallel_motion-belongs-to-sixbar")
                     found.append(Contradiction(f"/path/{name}", detail))
         if self.linkage is not None:
             found += _find_linkage_errors(self.linkage)
@@ -148,20 +149,18 @@ def _find_linkage_errors(linkage: SourceLinkage) -> list[Contradiction]:
     ground = math.dist(linkage.fixed_pivots.input, linkage.fixed_pivots.output)
     lengths = sorted((ground, links.input, links.coupler, links.output))
     if ground == 0.0:
-        found.append(
-            Contradiction("/linkage/fixed_pivots/output", "equal to the input's pivot; the ground link has no length")
-        )
+        found.append(Contradiction("/linkage/fixed_pivots/output", compose("parallel_motion-pivots-coincide")))
     elif lengths[3] >= sum(lengths[:3]):
-        found.append(Contradiction("/linkage/links", "one link is at least as long as the others together"))
+        found.append(Contradiction("/linkage/links", compose("parallel_motion-link-too-long")))
     if links.ground is not None and abs(links.ground - ground) > AGREEMENT_TOLERANCE * max(ground, links.ground):
-        detail = f"the fixed pivots give {ground:.9g}; leave the field out or correct it"
+        detail = compose("parallel_motion-ground-disagrees", length=f"{ground:.9g}")
         found.append(Contradiction("/linkage/links/ground", detail))
     far = max(map(abs, (*linkage.fixed_pivots.input, *linkage.fixed_pivots.output)))
     if min(lengths[0], point.distance or lengths[0]) < CANCELLATION_TOLERANCE * far and ground > 0.0:
-        detail = "too short relative to the coordinates of the pivots; move the origin nearer"
+        detail = compose("parallel_motion-links-too-short")
         found.append(Contradiction("/linkage/links", detail))
     if min(point.distance, abs(point.vector - links.coupler)) <= PIN_TOLERANCE * links.coupler:
-        detail = "on a pin of the coupler P runs on a circle and has no cognate; a parallelogram carries a body there"
+        detail = compose("parallel_motion-point-on-pin")
         found.append(Contradiction("/linkage/coupler_point", detail))
     return found or [*_find_reference_errors(linkage), *_find_skeleton_errors(linkage)]
 
@@ -176,7 +175,7 @@ def _find_reference_errors(linkage: SourceLinkage) -> list[Contradiction]:
     # Triangle A B O4 closes, up to the rounding of printed dimensions.
     if (1.0 - AGREEMENT_TOLERANCE) * low <= reach <= (1.0 + AGREEMENT_TOLERANCE) * high:
         return []
-    detail = "the linkage cannot be assembled at this input angle; leave it out or correct it"
+    detail = compose("parallel_motion-input-angle-impossible")
     return [Contradiction("/linkage/reference_input_angle", detail)]
 
 
@@ -193,12 +192,14 @@ def _find_skeleton_errors(linkage: SourceLinkage) -> list[Contradiction]:
         or skeleton.gears
         or not skeleton.joints.keys() >= JOINT_NAMES
     ):
-        detail = "not that of a fourbar with the links O2–O4, O2–A, A–B–P and O4–B; leave it out"
+        detail = compose("parallel_motion-skeleton-of-other-type")
         return [Contradiction("/linkage/skeleton", detail)]
     size = max(abs(z) for z in linkage.joints.values())
     for name, place in linkage.joints.items():
         stated = skeleton.joints.get(name)
         if stated is not None and abs(complex(*stated) - place) > AGREEMENT_TOLERANCE * size:
-            detail = f"the dimensions put {name} at ({place.real:.9g}, {place.imag:.9g}); leave the skeleton out"
+            detail = compose(
+                "parallel_motion-joint-disagrees", joint=name, x=f"{place.real:.9g}", y=f"{place.imag:.9g}"
+            )
             return [Contradiction(f"/linkage/skeleton/joints/{name}", detail)]
     return []

@@ -9,12 +9,12 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 from kinematics.linkage.fourbar import Fourbar, build_cognates, build_parallel_motion, positions
+from kinematics.message import compose, join_messages
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionResult
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import (
@@ -63,10 +63,10 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
             problem, _build_sixbar(fourbar.joints), fourbar.base, fourbar.input_side
         ),
     )
-    progress(1.0, "verified")
+    progress(1.0, compose("parallel_motion-verified"))
     return ParallelMotionResult(
         designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
-        search=sifting.build_search("cognates, one of them moved to the other's pivot"),
+        search=sifting.build_search(compose("parallel_motion-method")),
         summary=_describe_result(problem, sifting),
     )
 
@@ -178,14 +178,14 @@ def _build_sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
 
 def _describe_result(problem: ParallelMotionProblem, sifting: CandidateLog[ParallelMotionDesign]) -> str:
     if not sifting.passed:
-        reasons = sifting.format_reasons() or "no fourbar"
-        return f"None of {format_count(sifting.candidates, 'sixbar')} carries the body along the curve ({reasons})."
-    best, passed = _rank_designs(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
-    goes = "" if best.full_rotation else " (driven back and forth along a part of the curve)"
-    return (
-        f"{format_integer(passed)} of {format_count(sifting.candidates, 'sixbar')} "
-        f"{choose_word(passed, 'carries', 'carry')} the "
-        "body along the curve without turning it. Best design: minimum transmission angle "
-        f"{best.min_transmission_angle:.1f}°{goes}, driven at Q = ({best.translation[0]:.6g}, "
-        f"{best.translation[1]:.6g}) relative to P."
+        reasons = sifting.format_reasons() or compose("parallel_motion-no-fourbar")
+        return compose("parallel_motion-none-carries", candidates=sifting.candidates, reasons=reasons)
+    best = _rank_designs(problem.rank_by, sifting.passed)[0].metrics
+    carrying = compose("parallel_motion-sixbars-carry", passed=len(sifting.passed), candidates=sifting.candidates)
+    shown = compose(
+        "parallel_motion-best-design" if best.full_rotation else "parallel_motion-best-design-swings",
+        angle=f"{best.min_transmission_angle:.1f}",
+        x=f"{best.translation[0]:.6g}",
+        y=f"{best.translation[1]:.6g}",
     )
+    return join_messages([carrying, shown])

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import Contradiction, PositiveLength, Range, Sizable
@@ -80,21 +81,21 @@ class SteeringProblem(LinkageProblem):
         """Return contradictory requests: wheels between their kingpins, arms that would meet, and others."""
         found = []
         if self.track is not None and self.track < self.pivot_distance:
-            found.append(Contradiction("/track", "the wheels would lie between the kingpins; the track is the larger"))
+            found.append(Contradiction("/track", compose("steering-track-too-small")))
         # Arms that point at each other would collide.
         if self.arms[1] >= 0.5:
-            detail = "arms of half the pivot distance could meet; give shorter ones"
+            detail = compose("steering-arms-too-long")
             found.append(Contradiction("/arm_length/max", detail))
         if self.constraints.full_rotation:
-            detail = "a steering mechanism moves from lock to lock and does not turn through; drop this constraint"
+            detail = compose("steering-full-rotation")
             found.append(Contradiction("/constraints/full_rotation", detail))
         if not self.constraints.same_branch:
-            detail = "a steering mechanism that passes a toggle between its locks does not steer; leave this true"
+            detail = compose("steering-toggle-between-locks")
             found.append(Contradiction("/constraints/same_branch", detail))
         if self.mechanism == "davis":
-            found += self.constraints.find_class_contradictions((), "Davis's gear has slides and no class of fourbars")
+            found += self.constraints.find_class_contradictions((), compose("steering-class-of-davis"))
         else:
             # The arms are equal and the tie rod differs from the ground: S + L > P + Q always.
-            reason = "Ackermann's linkage, with two equal arms, is never Grashof"
+            reason = compose("steering-class-of-ackermann")
             found += self.constraints.find_class_contradictions(("non_grashof",), reason)
         return [*found, *self.find_contradicting_constraints()]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.steering.ackermann import find_ackermann_linkages
 from synthesis.kinds.steering.davis import build_davis_gears
 from synthesis.kinds.steering.design import SteeringDesign, SteeringMechanisms, SteeringResult
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
 from synthesis.results.ranking import rank_designs
@@ -19,24 +19,24 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
     """Solve a problem of steering."""
     mechanisms: list[SteeringMechanisms] = []
     remarks = []
-    progress(0.0, "fitting Ackermann's linkage")
+    progress(0.0, compose("steering-fitting-ackermann"))
     if problem.mechanism in ("ackermann", "auto"):
         linkages = find_ackermann_linkages(problem)
         mechanisms += linkages
         if not linkages:
-            remarks.append("No Ackermann linkage with such arms reaches the lock.")
-    progress(0.8, "verifying")
+            remarks.append(compose("steering-lock-out-of-reach"))
+    progress(0.8, compose("steering-verifying"))
     if problem.mechanism in ("davis", "auto"):
         mechanisms += build_davis_gears(problem)
     sifting = CandidateLog[SteeringDesign](problem)
     sifting.verify_candidates(mechanisms, partial(verify_steering, problem))
-    progress(1.0, "verified")
+    progress(1.0, compose("steering-verified"))
     # Only Davis's gear has a single solution with a known reach; Ackermann's is an optimum found by search.
     complete = problem.mechanism == "davis" and not sifting.rejected
     return SteeringResult(
         designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
         search=sifting.build_search("steering", complete=complete),
-        summary=" ".join([_describe_result(sifting, complete=complete), *remarks]),
+        summary=join_messages([_describe_result(sifting, complete=complete), *remarks]),
     )
 
 
@@ -60,14 +60,9 @@ def _describe_result(sifting: CandidateLog[SteeringDesign], *, complete: bool) -
     fourbars = [design.metrics.steering_error for design in passed if design.mechanism.type == "fourbar"]
     text = []
     if fourbars:
-        text.append(
-            f"The best of {format_count(len(fourbars), 'Ackermann linkage')} has a steering error of "
-            f"{min(fourbars):.4f}°."
-        )
+        text.append(compose("steering-best-error", count=len(fourbars), error=f"{min(fourbars):.4f}"))
     if any(design.mechanism.type == "davis" for design in passed):
-        text.append("Davis's gear steers correctly at every angle.")
+        text.append(compose("steering-davis-is-exact"))
     if not passed:
-        text.append("No design exists." if complete else "No design was found.")
-    if sifting.rejected:
-        text.append(f"Rejected: {sifting.format_reasons()}.")
-    return " ".join(text)
+        text.append(compose("steering-none-exists") if complete else compose("steering-none-found"))
+    return join_messages([*text, sifting.describe_reasons().strip()])

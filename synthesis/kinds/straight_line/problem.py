@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, PERCENT
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import (
@@ -123,13 +124,11 @@ class StraightLineProblem(LinkageProblem):
         # Scott-Russell's line is traced back beyond half a turn.
         for name, most in MAX_RANGE.items():
             if self.mechanism == name and self.get_range(name) >= most:
-                detail = f"the crank of {name} turns by less than {most:g}°; give less or choose another mechanism"
+                detail = compose("straight_line-crank-range-too-large", mechanism=name, limit=f"{most:g}")
                 contradictions.append(Contradiction("/crank_range", detail))
         if self.length < CANCELLATION_TOLERANCE * max(map(abs, self.start)):
-            contradictions.append(
-                Contradiction("/length", "too short relative to the coordinates of the start; move the origin nearer")
-            )
+            contradictions.append(Contradiction("/length", compose("straight_line-length-too-short")))
         if self.mechanism in EXACT_LINES:
-            reason = f"applies to fourbars; a {self.mechanism} mechanism has no class"
+            reason = compose("straight_line-class-of-exact-mechanism", mechanism=self.mechanism)
             contradictions += self.constraints.find_class_contradictions((), reason)
         return contradictions

@@ -11,6 +11,7 @@ import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose, join_messages
 from synthesis.kinds.straight_line.design import ExactLineMechanism, StraightLineDesign, StraightLineResult
 from synthesis.kinds.straight_line.exact import ExactLine, size_hart, size_peaucellier, size_scott_russell
 from synthesis.kinds.straight_line.families import (
@@ -25,7 +26,6 @@ from synthesis.kinds.straight_line.families import (
 )
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.kinds.straight_line.verification import verify_straight_line
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import (
@@ -94,17 +94,15 @@ def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> Str
     sifting = CandidateLog[StraightLineDesign](problem)
     types = problem.types
     for n, name in enumerate(types):
-        progress(n / len(types), f"searching {name.replace('_', ' ')} linkages")
+        progress(n / len(types), compose("straight_line-searching-type", mechanism=name.replace("_", " ")))
         candidates = _find_exact(problem, name) if name in EXACT_SIZERS else _find_fourbars(problem, name)
         # Counts as one rejected candidate, so that the summary explains a missing type.
         sifting.reject("no_such_linkage", not candidates)
         sifting.verify_candidates(candidates, partial(_verify_best_side, problem))
-    progress(1.0, "verified")
+    progress(1.0, compose("straight_line-verified"))
     return StraightLineResult(
         designs=sifting.select_designs(partial(_rank_designs, problem)),
-        search=sifting.build_search(
-            "sequential linear programming in each family; exact mechanisms by their dimensions"
-        ),
+        search=sifting.build_search(compose("straight_line-method")),
         summary=_describe_result(problem, sifting),
     )
 
@@ -297,15 +295,12 @@ def _build_mechanism(
 
 def _describe_result(problem: StraightLineProblem, sifting: CandidateLog[StraightLineDesign]) -> str:
     if not sifting.passed:
-        return (
-            f"No straight-line mechanism was found that satisfies all constraints ({sifting.format_reasons()}). One "
-            "may still exist."
-        )
+        return compose("straight_line-none-found", reasons=sifting.format_reasons())
     best = _rank_designs(problem, sifting.passed)[0].metrics
-    exact = best.straightness_error <= ROUNDING_PERCENT
-    kept = "follows the line exactly" if exact else f"stays in a strip of {best.straightness_error:.3g} % of the length"
-    name = best.family.replace("_", "-").title()
-    return (
-        f"{format_count(len(sifting.passed), 'straight-line mechanism')} found. The first, {name}'s, {kept}; "
-        f"its velocity varies by {best.velocity_variation:.3g} %."
-    )
+    name, variation = best.family.replace("_", "-").title(), f"{best.velocity_variation:.3g}"
+    if best.straightness_error <= ROUNDING_PERCENT:
+        first = compose("straight_line-first-is-exact", mechanism=name, variation=variation)
+    else:
+        width = f"{best.straightness_error:.3g}"
+        first = compose("straight_line-first-stays-in-strip", mechanism=name, width=width, variation=variation)
+    return join_messages([compose("straight_line-mechanisms-found", count=len(sifting.passed)), first])

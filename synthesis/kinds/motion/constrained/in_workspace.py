@@ -12,6 +12,7 @@ from functools import partial
 
 import numpy as np
 
+from kinematics.message import compose, join_messages
 from synthesis.fit.constrained_fit import WORKSPACE_TOLERANCE
 from synthesis.fit.workspace import AIM_SHARE, select_zones
 from synthesis.kinds.motion.constrained.fit import (
@@ -32,7 +33,6 @@ from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import make_motion_task
 from synthesis.kinds.motion.task.target_poses import make_target_poses
-from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog
@@ -125,7 +125,7 @@ class _WorkspaceSearch:
             if self._has_enough:
                 self.sifting.reject(OUTRANKED_REASON, len(starts) - n)
                 break
-            progress(0.2 + 0.4 * n / len(starts), f"fitting {len(starts)} linkages to the tolerances")
+            progress(0.2 + 0.4 * n / len(starts), compose("motion-fitting-linkages", count=len(starts)))
             some = starts[n : n + BATCH_SIZE]
             solved = solve_constrained(self._rows, some)
             # Distinct from all earlier results, not only within the batch.
@@ -149,7 +149,7 @@ class _WorkspaceSearch:
             if self._has_enough:
                 self.sifting.reject(OUTRANKED_REASON, len(near) - n)
                 break
-            progress(0.6 + 0.4 * n / len(near), f"moving {len(near)} linkages into the workspace")
+            progress(0.6 + 0.4 * n / len(near), compose("motion-moving-into-workspace", count=len(near)))
             some = near[n : n + MOVE_BATCH_SIZE]
             moved = solve_constrained(self._rows, replace_workspace(some, self._rows, self._room))
             self.sifting.reject("not_steered", len(some) - len(moved))
@@ -201,10 +201,10 @@ def solve_in_workspace(problem: MotionProblem, exact: MotionResult | None, progr
         Progress callback.
     """
     search = _WorkspaceSearch(problem, exact)
-    progress(0.0, "sampling linkages in the workspace")
+    progress(0.0, compose("motion-sampling-linkages"))
     near = search.fit_to_tolerances(search.list_starts(), progress)
     search.move_into_workspace(near, progress)
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     sifting, met = search.sifting, search.exact_count
     return MotionResult(
         designs=sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by)),
@@ -216,14 +216,13 @@ def solve_in_workspace(problem: MotionProblem, exact: MotionResult | None, progr
 
 def _describe_result(sifting: CandidateLog[LinkageDesign], started: int, fit_count: int, exact: int) -> str:
     if not sifting.passed:
-        return (
-            f"No design found: fits from {format_count(started, 'start')} in the workspace all violate a constraint "
-            f"(rejected: {sifting.format_reasons(OUTRANKED_REASON) or 'none'}). The search is not exhaustive, so a "
-            "solution may still exist."
-        )
+        reasons = sifting.format_reasons(OUTRANKED_REASON) or compose("motion-none-rejected")
+        return compose("motion-no-fit-in-workspace", starts=started, reasons=reasons)
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    return (
-        f"{format_count(fit_count, 'design', 'designs')} within the workspace {choose_word(fit_count, 'uses', 'use')} "
-        f"the tolerances, and {format_count(exact, 'design meets', 'designs meet')} the positions exactly. Best "
-        f"minimum transmission angle: {best:.1f}°. A better linkage may exist."
+    return join_messages(
+        [
+            compose("motion-fits-in-workspace", fits=fit_count, exact=exact),
+            compose("motion-best-transmission-angle", angle=f"{best:.1f}"),
+            compose("motion-better-possible"),
+        ]
     )

@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.constrained.fit import DUPLICATE_TOLERANCE
 from synthesis.kinds.motion.constrained.solver import REASONS
 from synthesis.kinds.motion.constrained.starts import sample_deviations
@@ -140,13 +141,13 @@ def _move_choices(side: DyadChoices, first: complex, moved: tuple[complex, compl
 
 
 def _describe_result(sifting: CandidateLog[LinkageDesign], results: list[MotionResult]) -> str:
-    sets = f"{len(results)} set{'s' * (len(results) > 1)} of poses sampled within the tolerances"
     if not sifting.passed:
-        return (
-            f"No linkage for {sets} satisfies all constraints. The search is not exhaustive, so a solution may still "
-            f"exist. For the exact positions: {results[0].summary}"
-        )
+        return compose("motion-no-linkage-for-sampled-poses", sets=len(results), summary=results[0].summary)
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    count = sifting.accepted
-    found = f"{count} linkages for {sets} satisfy" if count > 1 else f"1 linkage for {sets} satisfies"
-    return f"{found} all constraints. Best minimum transmission angle: {best:.1f}°. A better linkage may exist."
+    return join_messages(
+        [
+            compose("motion-linkages-for-sampled-poses", linkages=sifting.accepted, sets=len(results)),
+            compose("motion-best-transmission-angle", angle=f"{best:.1f}"),
+            compose("motion-better-possible"),
+        ]
+    )

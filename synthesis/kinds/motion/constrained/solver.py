@@ -16,6 +16,7 @@ import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.linkage.fourbar import positions
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.constrained.fit import (
     make_constrained_fit,
     make_target_rows,
@@ -31,7 +32,6 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.verification.verify import verify
-from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign, LinkageMechanism
 from synthesis.model.linkage.conversion import (
@@ -65,9 +65,9 @@ def solve_with_tolerances(problem: MotionProblem, exact: MotionResult, progress:
     """
     task = make_motion_task(problem)
     rows = make_target_rows(problem, task)
-    progress(0.0, "sampling poses within the tolerances")
+    progress(0.0, compose("motion-sampling-poses"))
     listed = list_starts(problem, task, rows[:, 3:], MAX_STARTS)
-    progress(0.4, f"fitting {len(listed)} linkages to the tolerances")
+    progress(0.4, compose("motion-fitting-linkages", count=len(listed)))
     first = [make_constrained_fit(problem, task, rows, start) for start in listed]
     steered = solve_constrained(rows, first)
     sifting = CandidateLog[LinkageDesign](problem, REASONS)
@@ -84,10 +84,10 @@ def solve_with_tolerances(problem: MotionProblem, exact: MotionResult, progress:
     offered = select_distinct_fits([*bettered, *unlike])
     sifting.reject("not_steered", len(first) - len(steered) + len(free) - len(bettered))
     sifting.reject(OUTRANKED_REASON, len(steered) + len(bettered) - len(offered))
-    progress(0.8, f"verifying {len(offered)} linkages")
+    progress(0.8, compose("motion-verifying-linkages", count=len(offered)))
     target = make_target_poses(problem)
     sifting.verify_candidates(offered, lambda linkage: verify_fit(problem, task, rows, linkage.x, target))
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     return MotionResult(
         designs=sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by)),
         curves=exact.curves,
@@ -145,16 +145,13 @@ def _make_start(problem: MotionProblem, task: MotionTask, rows: Real, design: Li
 
 def _describe_result(sifting: CandidateLog[LinkageDesign], started: int, fit_count: int, exact: int) -> str:
     if not sifting.passed:
-        return (
-            f"No design found: fits from {format_count(started, 'start')} within the tolerances all violate a "
-            f"constraint (rejected: {sifting.format_reasons(OUTRANKED_REASON) or 'none'}). The search is not "
-            "exhaustive, so a solution may still exist."
-        )
+        reasons = sifting.format_reasons(OUTRANKED_REASON) or compose("motion-none-rejected")
+        return compose("motion-no-fit-within-tolerances", starts=started, reasons=reasons)
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    return (
-        f"{format_count(fit_count, 'design', 'designs')} from {format_count(started, 'start')} "
-        f"{choose_word(fit_count, 'uses', 'use')} the tolerances, and "
-        f"{format_count(exact, 'design meets', 'designs meet')} the "
-        f"positions exactly. Best minimum transmission angle: {best:.1f}°. The search samples poses within the "
-        "tolerances, so a better linkage may exist."
+    return join_messages(
+        [
+            compose("motion-fits-within-tolerances", fits=fit_count, starts=started, exact=exact),
+            compose("motion-best-transmission-angle", angle=f"{best:.1f}"),
+            compose("motion-better-pose-possible"),
+        ]
     )

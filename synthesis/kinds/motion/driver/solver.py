@@ -24,13 +24,13 @@ import numpy as np
 
 from kinematics.arrays import Complex, Real
 from kinematics.linkage.fourbar import positions
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.driver.coupler_driver import find_coupler_drivers
 from synthesis.kinds.motion.driver.joints import SIZE_SCALE, build_rocker_driver, measure_diagonal
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.statement.dyad_choices import DriverDyad
 from synthesis.kinds.motion.verification.verify import verify
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import FourbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.model.linkage.conversion import build_driven_fourbar, to_complex
@@ -110,14 +110,12 @@ def add_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pro
             usable.append(sifting.passed[-1])
     # Designs with poor transmission are returned only if there are no others.
     sifting.withdraw(usable or sifting.passed, OUTRANKED_REASON)
-    were = choose_word(sifting.accepted, "was", "were")
-    of = f"{format_integer(sifting.accepted)} of {format_count(tried, 'fourbar')}"
-    given = f"{of} {were} given a driver dyad with a fully rotating crank."
+    given = compose("motion-drivers-added", accepted=sifting.accepted, fourbars=tried)
     return result.model_copy(
         update={
             "designs": sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by)),
             "search": sifting.build_search(f"{result.search.method}, driver_dyad"),
-            "summary": f"{given} {result.summary}",
+            "summary": join_messages([given, result.summary]),
         }
     )
 

@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.motion.dyads import burmester
 from synthesis.kinds.motion.dyads.equations import (
     MAX_PIVOT_DISTANCE,
@@ -76,6 +79,17 @@ distinguished from all other motions."""
 _NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
 
 
+class SideMessage(NamedTuple):
+    """A message about one side: its id and values, to be composed when the name of the side is known."""
+
+    id: str
+    values: Mapping[str, str | int] = MappingProxyType({})
+
+    def write(self, side: str) -> str:
+        """Compose the message; ``side`` is the id of the side's name."""
+        return compose(self.id, side=compose(side), **self.values)
+
+
 class Cloud(NamedTuple):
     """The dyads of one side.
 
@@ -87,10 +101,10 @@ class Cloud(NamedTuple):
         The choices leave some freedom, and these dyads are a sample.
     complete : bool
         These are provably all dyads that satisfy the client's choices, even if there are none.
-    reason : str
-        The reason for an empty cloud, in a sentence about "the side".
-    remark : str
-        Further remarks for the client, in sentences about "the side".
+    reason : SideMessage, optional
+        The reason for an empty cloud.
+    remarks : tuple of SideMessage
+        Further remarks for the client.
     sliders : tuple of SliderDyad
         Dyads with a pivot at infinity that satisfy the choices, if all are known.
     """
@@ -98,8 +112,8 @@ class Cloud(NamedTuple):
     dyads: Dyads
     sampled: bool
     complete: bool
-    reason: str = ""
-    remark: str = ""
+    reason: SideMessage | None = None
+    remarks: tuple[SideMessage, ...] = ()
     sliders: tuple[SliderDyad, ...] = ()
 
 
@@ -161,7 +175,7 @@ def find_side_dyads(
     """
     impossible = explain_no_dyads(task)
     if impossible is not None:
-        return Cloud(_NO_DYADS, False, impossible.proved, impossible.text)
+        return Cloud(_NO_DYADS, False, impossible.proved, SideMessage(impossible.message_id))
     choices = (problem.input_side, problem.output_side)[side]
     conditions = build_conditions(task, problem, choices)
     essential, conditions, lost = _drop_redundant_positions(task, conditions)
@@ -177,11 +191,11 @@ def find_side_dyads(
         cloud = _sample_choices(essential, conditions, areas, rng, count)
     if len(essential.points) == len(task.points):
         return cloud
-    meets = "meets all" if not lost else "meets, to nine digits, all"
-    return cloud._replace(
-        complete=cloud.complete and not lost,
-        remark=f"A dyad that meets {len(essential.points)} of the positions {meets} {len(task.points)}. {cloud.remark}",
+    met = SideMessage(
+        "motion-dyads-nearly-meet-other-positions" if lost else "motion-dyads-meet-other-positions",
+        {"positions": len(essential.points), "total": len(task.points)},
     )
+    return cloud._replace(complete=cloud.complete and not lost, remarks=(met, *cloud.remarks))
 
 
 class _ReducedTask(NamedTuple):
@@ -228,23 +242,23 @@ def _solve_section(task: MotionTask, conditions: DyadConditions, rng: np.random.
     intersection = find_section(task, conditions)
     if not intersection.finite:
         cloud = _sample_sections(task, conditions, rng)
-        return cloud._replace(remark="A whole family of dyads satisfies the positions and choices of the side.")
+        return cloud._replace(remarks=(SideMessage("motion-family-of-dyads"),))
     dyads = intersection.dyads
     # Newton's method needs a square system; at a double root it would converge slowly and is left out.
     if conditions.count() == 5 - len(task.points):
         refined, converged = solve_dyads(task, conditions, dyads)
         kept = converged & ~intersection.double
         dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
-    remark = ""
+    remarks = []
     if intersection.double.any():
-        remark = "Dyads of the side coincide (a double root), or are too close to be counted."
+        remarks.append(SideMessage("motion-dyads-coincide"))
     if intersection.far:
-        word = "dyad of the side has" if intersection.far == 1 else "dyads of the side have"
-        remark += f" {intersection.far} {word} a pivot more than {MAX_PIVOT_DISTANCE:.0e} task sizes away."
-    elif not intersection.proved and not remark:
-        remark = "The positions and choices of the side leave too few digits to count the dyads."
-    text = "No dyad with two pins satisfies the positions and choices of the side."
-    return Cloud(dyads, False, intersection.proved, text, remark, intersection.sliders)
+        distance = f"{MAX_PIVOT_DISTANCE:.0e}"
+        remarks.append(SideMessage("motion-dyads-far", {"count": intersection.far, "distance": distance}))
+    elif not intersection.proved and not remarks:
+        remarks.append(SideMessage("motion-dyads-uncountable"))
+    reason = SideMessage("motion-no-pinned-dyad")
+    return Cloud(dyads, False, intersection.proved, reason, tuple(remarks), intersection.sliders)
 
 
 def _sample_sections(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
@@ -265,8 +279,8 @@ def _sample_sections(task: MotionTask, conditions: DyadConditions, rng: np.rando
         near = np.maximum(np.abs(intersection.dyads.fixed), np.abs(intersection.dyads.moving)) <= MAX_CURVE_DISTANCE
         fixed.append(intersection.dyads.fixed[near])
         moving.append(intersection.dyads.moving[near])
-    text = "A family of dyads satisfies the positions and choices of the side, but none was found within reach."
-    return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, text)
+    reason = SideMessage("motion-no-dyad-of-family")
+    return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, reason)
 
 
 def _sample_curve(
@@ -280,8 +294,8 @@ def _sample_curve(
     # Samples of the curve carry a few digits of error; project them back before they are used.
     dyads = refine_dyads(task, dyads)
     good = _inside_areas(task, areas, dyads)
-    text = "No dyad of the side has its pivots within reach and in the given regions."
-    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
+    reason = SideMessage("motion-no-dyad-in-regions")
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, reason)
 
 
 def make_curve_window(task: MotionTask) -> burmester.Window:
@@ -308,7 +322,7 @@ def _sample_choices(
         if sum(map(len, fixed)) >= count // 2:
             break
     cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])
-    return Cloud(cloud, True, False, "No dyad found satisfies the choices and regions of the side.")
+    return Cloud(cloud, True, False, SideMessage("motion-no-dyad-found"))
 
 
 def _inside_areas(task: MotionTask, areas: SideAreas, dyads: Dyads) -> NDArray[np.bool_]:
@@ -317,9 +331,9 @@ def _inside_areas(task: MotionTask, areas: SideAreas, dyads: Dyads) -> NDArray[n
 
 
 class ImpossibilityReason(NamedTuple):
-    """The reason why there are no dyads, as a sentence, and whether the positions have enough digits to prove it."""
+    """The reason why there are no dyads, by its message, and whether the positions have enough digits to prove it."""
 
-    text: str
+    message_id: str
     proved: bool = True
 
 
@@ -336,17 +350,11 @@ def explain_no_dyads(task: MotionTask) -> ImpossibilityReason | None:
         sides = task.points[1:] - task.points[0]
         # For pure translations all turns are equal to one, so only the sides decide.
         if np.abs((np.conj(sides[0]) * sides).imag).max() <= EQUALITY_TOLERANCE:
-            return ImpossibilityReason(
-                "The positions are a translation along a straight line: every point of the body moves on a line, so "
-                "only a slider can guide it. No pin-jointed fourbar exists."
-            )
+            return ImpossibilityReason("motion-straight-translation")
         # For a translation along a circle |c|² is linear in c, which leaves rows of rank two.
         if np.linalg.svd(build_pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANCY_TOLERANCE:
             return None
-        return ImpossibilityReason(
-            "The positions are a translation, but not along a circle: every point of the body follows the same points "
-            "as P, so no rigid link can guide it. No pin-jointed fourbar exists."
-        )
+        return ImpossibilityReason("motion-other-translation")
     # The position with the largest rotation gives the best-conditioned pole; test that it is fixed in all positions.
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _find_pole(task, turning)
@@ -356,10 +364,9 @@ def explain_no_dyads(task: MotionTask) -> ImpossibilityReason | None:
     # A rotation about the pole keeps it in place; if one position moves it, dyads exist.
     if np.abs(task.images(np.asarray(pole)) - pole).max() > rounding:
         return None
-    about = "All positions are rotations about one point: a plain pin joint there carries the body"
     if rounding > ROTATION_TOLERANCE * turned:
-        return ImpossibilityReason(f"{about}, to the digits given.", proved=False)
-    return ImpossibilityReason(f"{about}. It would be the fixed pivot of every dyad, so no fourbar exists.")
+        return ImpossibilityReason("motion-nearly-rotation-about-point", proved=False)
+    return ImpossibilityReason("motion-rotation-about-point")
 
 
 def _find_pole(task: MotionTask, k: int) -> complex:
@@ -385,8 +392,8 @@ def _sample_family(
         reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
         # A pivot that far away moves on an almost straight line.
         if reach >= MAX_PIVOT_DISTANCE:
-            text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; use a slider instead."
-            return Cloud(_NO_DYADS, False, False, text)
+            reason = SideMessage("motion-other-pivot-far", {"distance": f"{reach:.0e}"})
+            return Cloud(_NO_DYADS, False, False, reason)
         return _select_forward(task, conditions, family.dyad, sampled=False, proved=family.proved)
     distance = sample_distances(rng, count, free)
     # Distances are positive; random signs use both directions of the family.
@@ -403,24 +410,18 @@ def _select_forward(
 ) -> Cloud:
     """Return the dyads that meet the given directions with positive lengths."""
     good = check_directions(task, conditions, dyads)
-    text = "Only a link or coupler vector of negative length would meet the choices of the side."
-    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, proved, text)
+    reason = SideMessage("motion-negative-length")
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, proved, reason)
 
 
-def _explain_contradiction(task: MotionTask, conditions: DyadConditions, *, proved: bool) -> str:
+def _explain_contradiction(task: MotionTask, conditions: DyadConditions, *, proved: bool) -> SideMessage:
     """Explain why linear conditions have no solution."""
     pivot = _get_given_pivot(conditions)
     if pivot is None:
-        return "The rotations of the side belong to no link of finite length."
+        return SideMessage("motion-rotations-without-link")
     if len(task.points) > 3:
-        return (
-            "The given pivot of the side belongs to no dyad that meets all positions. "
-            f"{_describe_nearest(task, conditions)}"
-        )
-    line = "The given pivot of the side has all its images on one straight line"
-    if not proved:
-        return f"{line}, to within the digits given."
-    return f"{line}: only a slider can guide it, not a pin-jointed link. No design exists with these choices."
+        return SideMessage("motion-pivot-without-dyad", {"nearest": _describe_nearest(task, conditions)})
+    return SideMessage("motion-pivot-on-line" if proved else "motion-pivot-nearly-on-line")
 
 
 def _describe_nearest(task: MotionTask, conditions: DyadConditions) -> str:
@@ -434,12 +435,12 @@ def _describe_nearest(task: MotionTask, conditions: DyadConditions) -> str:
     else:
         dyads = find_section(task, nothing).dyads
     if not len(dyads.fixed):
-        return "No pivot within reach does."
+        return compose("motion-no-nearest-pivot")
     moving = conditions.fixed_pivot is None
     pivots, stated = (dyads.moving, conditions.moving_pivot) if moving else (dyads.fixed, conditions.fixed_pivot)
     assert stated is not None
     nearest = task.to_problem(complex(pivots[np.abs(pivots - stated).argmin()]))
-    return f"The nearest pivot that does is at about ({nearest.real:.6g}, {nearest.imag:.6g})."
+    return compose("motion-nearest-pivot", x=f"{nearest.real:.6g}", y=f"{nearest.imag:.6g}")
 
 
 def _sample_pivots(task: MotionTask, areas: SideAreas, rng: np.random.Generator, count: int) -> Dyads:

@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
 from synthesis.kinds.motion.task.positions import MotionTask, find_given_pivot
 from synthesis.kinds.motion.task.random_points import sample_distances, sample_points_around
@@ -80,7 +81,6 @@ def find_sliders(
     images = _compute_images(task, inverted)
     stated = find_given_pivot(task, choices, fixed=inverted)
     angle = None if choices.slide_angle is None else math.radians(choices.slide_angle)
-    name = "fixed point" if inverted else "point of the body"
     if stated is not None:
         points, sampled, plain = np.array([stated]), False, True
     elif angle is not None:
@@ -104,7 +104,7 @@ def find_sliders(
         angles = np.full(len(points), angle)
     # A point that does not move slides on no line, or on all of them.
     good = (off <= LINE_TOLERANCE) & (np.abs(along) > LINE_TOLERANCE)
-    reason = f"No {name} has all its images on one line."
+    reason = compose("motion-no-fixed-point-on-line" if inverted else "motion-no-body-point-on-line")
     return Sliders(points[good], angles[good], sampled, proved, reason)
 
 

@@ -109,8 +109,8 @@ class DyadPairs:
 
     @property
     def missing_side(self) -> tuple[str, Cloud] | None:
-        """Name and cloud of the first side without any dyad; None if both sides have some."""
-        named = zip(("input", "output"), self.clouds, strict=True)
+        """Name (as a message) and cloud of the first side without any dyad; None if both sides have some."""
+        named = zip(("motion-input-side", "motion-output-side"), self.clouds, strict=True)
         return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
 
     def verify_pair(self, pair: tuple[int, int]) -> LinkageDesign | str | None:

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from kinematics.arrays import Complex, Integers, Real
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads.candidates import find_side_dyads
 from synthesis.kinds.motion.dyads.equations import Dyads
@@ -36,7 +37,6 @@ from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
 from synthesis.kinds.motion.task.pivot_regions import inside_mask, list_side_areas
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.kinds.motion.verification.verify import verify
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkage.conversion import build_inverted_slider_crank, build_slider_crank
@@ -113,7 +113,7 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     """Solve for linkages with the requested slider on one side, for two to five positions."""
     task = make_motion_task(problem)
     rng = np.random.default_rng(problem.seed)
-    progress(0.0, "finding sliders")
+    progress(0.0, compose("motion-finding-sliders"))
     side = int(problem.output_side.dyad == kind)
     stated = (problem.input_side, problem.output_side)[side]
     areas = list_side_areas(problem)
@@ -123,13 +123,13 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     dyads = find_sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDER_COUNT * more)
     if not len(dyads.points):
         return _report_missing_dyads(problem, dyads.reason, complete=dyads.proved)
-    progress(0.1, "finding links")
+    progress(0.1, compose("motion-finding-links"))
     count = LINK_COUNT if dyads.sampled else SINGLE_SIDE_COUNT
     links = find_side_dyads(task, problem, 1 - side, areas[1 - side], rng, count)
     if not len(links.dyads.fixed):
-        return _report_missing_dyads(
-            problem, links.reason.replace("the side", "the side with pins"), complete=links.complete
-        )
+        assert links.reason is not None
+        reason = links.reason.write("motion-side-with-pins")
+        return _report_missing_dyads(problem, reason, complete=links.complete)
     most = SLIDER_COUNT if links.sampled else SINGLE_SIDE_COUNT
     # Only the sliders are sampled: use a larger cloud of them.
     if dyads.sampled and not links.sampled:
@@ -151,8 +151,8 @@ def try_sliders(problem: MotionProblem, result: MotionResult, progress: Progress
     for kind, slider_problem in _propose_slider_problems(problem):
         answer = solve_sliders(slider_problem, kind, lambda fraction, message: progress(1.0, message))
         if answer.designs:
-            text = f"{result.summary} With a slider instead of a pin: {answer.summary}"
-            return answer.model_copy(update={"summary": text})
+            instead = compose("motion-slider-instead-of-pin", summary=answer.summary)
+            return answer.model_copy(update={"summary": join_messages([result.summary, instead])})
     return result
 
 
@@ -186,8 +186,7 @@ def merge_sliders(
     search = sifting.build_search(
         f"{result.search.method}, slider_search", complete=result.search.complete and not open_questions
     )
-    carrying = format_count(accepted, "linkage with a slider carries", "linkages with a slider carry")
-    text = f"{result.summary} {carrying} the body through all positions."
+    text = join_messages([result.summary, compose("motion-sliders-found", count=accepted)])
     designs = rank_designs(designs, problem.rank_by)[: problem.max_designs]
     return result.model_copy(update={"designs": designs, "search": search, "summary": text})
 
@@ -222,7 +221,7 @@ def solve_slider_pairs(
     """
     driving = problem.input_side.dyad == "PR"
     limit = problem.constraints.min_transmission_angle
-    progress(0.3, f"screening {len(links.fixed) * len(sliders.points)} pairs of links and sliders")
+    progress(0.3, compose("motion-screening-slider-pairs", count=len(links.fixed) * len(sliders.points)))
     few = len(links.fixed) * len(sliders.points) <= MIN_ATTEMPTS  # all of them can be driven: no filter is needed
     # Few pairs can all be driven, which is more accurate than any filter.
     wanted = (0.0 if few else USABLE_TRANSMISSION_ANGLE) if limit is None else limit
@@ -251,16 +250,22 @@ def solve_slider_pairs(
         enough=problem.max_designs,
     )
     sifting.reject(OUTRANKED_REASON, sound - driven)
-    progress(1.0, "verified")
-    word = "slider-crank" if kind == "PR" else "inverted slider-crank"
-    distinct = format_count(sifting.accepted, f"distinct {word}", f"distinct {word}s")
-    text = f"{distinct} verified, chosen from {format_count(sifting.candidates, 'pair')} of dyads."
-    if not sifting.accepted:
-        text = f"No {word} found satisfies all constraints (rejected: {sifting.format_reasons() or 'none'})."
+    progress(1.0, compose("motion-verified"))
     return MotionResult(
         designs=sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by)),
         search=sifting.build_search("slider_search"),
-        summary=text,
+        summary=_describe_result(sifting, kind),
+    )
+
+
+def _describe_result(sifting: CandidateLog[LinkageDesign], kind: str) -> str:
+    if not sifting.accepted:
+        reasons = sifting.format_reasons() or compose("motion-none-rejected")
+        return compose("motion-no-slider-crank" if kind == "PR" else "motion-no-inverted-slider-crank", reasons=reasons)
+    return compose(
+        "motion-slider-cranks-verified" if kind == "PR" else "motion-inverted-slider-cranks-verified",
+        designs=sifting.accepted,
+        pairs=sifting.candidates,
     )
 
 

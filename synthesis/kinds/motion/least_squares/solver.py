@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Real
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads.equations import Dyads
 from synthesis.kinds.motion.exact.screening import SOUND, screen
@@ -28,7 +29,6 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.kinds.motion.task.ranking import get_rms_error, make_ranking
 from synthesis.kinds.motion.verification.verify import verify
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkage.conversion import (
@@ -95,19 +95,19 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
     task = make_motion_task(problem)
     demands = make_pose_constraints(problem, task)
     rng = np.random.default_rng(problem.seed)
-    progress(0.0, "fitting single dyads")
+    progress(0.0, compose("motion-fitting-dyads"))
     sides = problem.input_side, problem.output_side
     # With equal choices for both sides the dyads are interchangeable, so fit them once.
     alike = sides[0] == sides[1]
     inputs = _fit_dyads(task, demands, problem, 0, rng)
     outputs = inputs if alike else _fit_dyads(task, demands, problem, 1, rng)
-    progress(0.3, "pairing dyads")
+    progress(0.3, compose("motion-pairing-dyads"))
     pairs = _select_pairs(problem, task, demands, inputs, outputs)
     run = _FitLog(problem, task, demands, alike=alike)
     # First stop every fit early, then spend the effort on the few pairs that look best.
     rough: list[_Pair] = []
     for n, pair in enumerate(pairs):
-        progress(0.35 + 0.3 * n / len(pairs), f"fitting pair {n + 1} of {len(pairs)}")
+        progress(0.35 + 0.3 * n / len(pairs), compose("motion-fitting-pair", number=n + 1, count=len(pairs)))
         ended = pair.problem.minimize(pair.point, tolerance=ROUGH_TOLERANCE, evaluations=MAX_ROUGH_EVALUATIONS)
         if ended is None:
             run.reject("positions_not_held")
@@ -116,14 +116,16 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
     rough.sort(key=lambda pair: pair.cost)
     # Slots are replaced in place: the list is sorted again below, because refinement changes the order.
     for n, pair in enumerate(rough[:REFINED_PAIR_COUNT]):
-        progress(0.65 + 0.2 * n / REFINED_PAIR_COUNT, f"refining pair {n + 1} of {REFINED_PAIR_COUNT}")
+        progress(
+            0.65 + 0.2 * n / REFINED_PAIR_COUNT, compose("motion-refining-pair", number=n + 1, count=REFINED_PAIR_COUNT)
+        )
         ended = pair.problem.minimize(pair.point)
         # A refinement that loses the exact positions keeps the rough fit.
         rough[n] = pair if ended is None else pair._replace(point=ended.point, cost=ended.cost)
     for n, pair in enumerate(sorted(rough, key=lambda pair: pair.cost)):
-        progress(0.85 + 0.15 * n / len(rough), "verifying the fitted linkages")
+        progress(0.85 + 0.15 * n / len(rough), compose("motion-verifying-fits"))
         run.drive(pair)
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     return run.build_result()
 
 
@@ -348,20 +350,21 @@ class _FitLog(CandidateLog[LinkageDesign]):
         )
 
     def _describe_result(self) -> str:
-        n = len(self.problem.positions)
         if self.passed:
-            share, passed = 100.0 * min(map(get_rms_error, self.passed)), len(self.passed)
-            text = (
-                f"{format_integer(passed)} of {format_count(self.candidates, 'fitted linkage')} "
-                f"{choose_word(passed, 'satisfies', 'satisfy')} "
-                f"all constraints of the {n} positions. Best root-mean-square residual: {share:.3g} % of the task size "
-                "(angles in hundredths of a radian)."
-            )
+            share = 100.0 * min(map(get_rms_error, self.passed))
+            found = [
+                compose(
+                    "motion-fits-feasible",
+                    passed=len(self.passed),
+                    candidates=self.candidates,
+                    positions=len(self.problem.positions),
+                ),
+                compose("motion-best-error", error=f"{share:.3g}"),
+            ]
         else:
-            reasons = self.format_reasons() or "none"
-            linkages = format_count(self.candidates, "fitted linkage")
-            text = f"None of {linkages} satisfies all constraints (rejected: {reasons})."
-        return text + " The fit starts from many points but is not exhaustive, so a closer linkage may exist."
+            reasons = self.format_reasons() or compose("motion-none-rejected")
+            found = [compose("motion-no-fit-feasible", candidates=self.candidates, reasons=reasons)]
+        return join_messages([*found, compose("motion-closer-possible")])
 
 
 def _is_better(design: LinkageDesign, other: LinkageDesign) -> bool:

@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose, join_messages
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar import candidate_value
@@ -28,7 +29,6 @@ from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
 from synthesis.kinds.motion.task.ranking import get_rms_error, make_ranking
 from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.verification.verify import verify
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import LinkageDesign, SixbarMechanism
 from synthesis.model.linkage.problem import Region
@@ -81,11 +81,6 @@ WORKSPACE_ATTEMPTS = 150
 
 GRASHOF_CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
 """Grashof classes in the kernel's numbering."""
-
-NO_CRANK_REMARK = (
-    "A Stephenson II sixbar needs a crank between body and ground, and no crank found meets these positions"
-)
-"""Summary text if no sixbar was searched."""
 
 UNBOUNDED_BOX = np.array([-np.inf, np.inf, -np.inf, np.inf])
 
@@ -141,7 +136,7 @@ class SixbarSearch:
             # At least two rounds are made, so that not all sixbars come from one lucky round.
             if n >= MIN_ROUNDS and sound_ones >= self.problem.max_designs:
                 break
-            progress(min(spent, 1.0), f"{self.candidate_count} sixbars examined")
+            progress(min(spent, 1.0), compose("motion-sixbars-examined", count=self.candidate_count))
         return found
 
     def fit(self, progress: Progress) -> SixbarCandidates:
@@ -172,7 +167,7 @@ class SixbarSearch:
                     until = EXTENDED_FIT_BUDGET
             # The budget may be extended, but reported progress must not decrease.
             share = max(share, min(n * BRANCH_ROUND_SHARE / until, 1.0))
-            progress(share, f"{self.candidate_count} sixbars examined")
+            progress(share, compose("motion-sixbars-examined", count=self.candidate_count))
         return found
 
     def _select_distinct(self, found: SixbarCandidates) -> SixbarCandidates:
@@ -203,7 +198,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
     looked = scale_progress(progress, 0.0, 0.9)
     found = search.fit(looked) if problem.is_least_squares else search.run(looked)
     sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
-    progress(0.9, f"verifying the best of {search.candidate_count} sixbars")
+    progress(0.9, compose("motion-verifying-best-sixbars", count=search.candidate_count))
     # Feasible ones come first. The others may violate only default limits, so the verification decides about them.
     rows = np.flatnonzero(found.values >= 0.0)
 
@@ -213,7 +208,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
     tried = sifting.verify_candidates(rows.tolist(), verify_sixbar, enough=problem.max_designs)
     # All others were examined, but not verified.
     sifting.reject("unsound", search.candidate_count - tried)
-    progress(1.0, "verified")
+    progress(1.0, compose("motion-verified"))
     return MotionResult(
         designs=sifting.select_designs(make_ranking(problem)),
         search=sifting.build_search(search.method),
@@ -261,25 +256,31 @@ def _scale_box(sides: tuple[float, float, float, float], task: MotionTask) -> Re
 
 
 def _describe_result(sifting: CandidateLog[LinkageDesign], search: SixbarSearch) -> str:
-    looked_at = [
-        format_count(count, f"sixbar {which}was {done}", f"sixbars {which}were {done}")
-        for count, which, done in (
-            (search.branches.descents, "", "fitted to the positions on one branch"),
-            (search.chains.weighed, "from chains with two constraining cranks ", "evaluated"),
-        )
-        if count
-    ]
-    effort = " and ".join(looked_at) or NO_CRANK_REMARK
+    effort = _describe_effort(search)
     if not sifting.passed:
-        return (
-            f"{effort}; no design found satisfies all constraints.{sifting.describe_reasons()} "
-            "This does not prove that none exists."
+        return join_messages(
+            [
+                compose("motion-no-sixbar-feasible", effort=effort),
+                sifting.describe_reasons().strip(),
+                compose("motion-unproven"),
+            ]
         )
-    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    count = len(sifting.passed)
-    many = f"{count} distinct designs verified" if count > 1 else "1 design verified"
-    near = ""
+    found = [compose("motion-sixbars-verified", effort=effort, designs=len(sifting.passed))]
     if search.problem.is_least_squares:
         share = 100.0 * min(map(get_rms_error, sifting.passed))
-        near = f"Best root-mean-square residual: {share:.3g} % of the task size (angles in hundredths of a radian). "
-    return f"{effort}; {many}. {near}Best minimum transmission angle: {best:.1f}°."
+        found.append(compose("motion-best-error", error=f"{share:.3g}"))
+    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
+    return join_messages([*found, compose("motion-best-transmission-angle", angle=f"{best:.1f}")])
+
+
+def _describe_effort(search: SixbarSearch) -> str:
+    """Return the beginning of a sentence: the numbers of sixbars that each method examined."""
+    descents, weighed = search.branches.descents, search.chains.weighed
+    fitted = compose("motion-sixbars-fitted", count=descents)
+    from_chains = compose("motion-sixbars-from-chains", count=weighed)
+    if descents and weighed:
+        return compose("motion-both-sixbar-searches", first=fitted, second=from_chains)
+    if descents or weighed:
+        return fitted if descents else from_chains
+    # Only Stephenson II sixbars need a crank before they can be examined.
+    return compose("motion-stephenson-2-without-crank")

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from kinematics.message import compose
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices, to_complete_point
 from synthesis.kinds.motion.statement.mechanism_types import find_motion_sixbar_contradictions
 from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS
@@ -60,7 +61,8 @@ def _check_equal_positions(problem: MotionProblem) -> list[Contradiction]:
     if 0.0 < moved < MIN_DISPLACEMENT:
         return [
             Contradiction(
-                "/positions", f"are less than {MIN_DISPLACEMENT} {problem.length_unit} apart; use a smaller unit"
+                "/positions",
+                compose("motion-positions-nearly-equal", distance=f"{MIN_DISPLACEMENT}", unit=problem.length_unit),
             )
         ]
     contradictions = []
@@ -69,7 +71,7 @@ def _check_equal_positions(problem: MotionProblem) -> list[Contradiction]:
             turn = math.remainder(later.angle - earlier.angle, 360.0)
             near = abs(later.point - earlier.point) <= EQUALITY_TOLERANCE * size
             if near and abs(math.radians(turn)) <= EQUALITY_TOLERANCE:
-                contradictions.append(Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ"))
+                contradictions.append(Contradiction(f"/positions/{k}", compose("motion-position-repeated", position=j)))
     return contradictions
 
 
@@ -85,7 +87,7 @@ def _check_workspace(problem: MotionProblem) -> list[Contradiction]:
 
 def _check_exact_tolerances(problem: MotionProblem) -> list[Contradiction]:
     return [
-        Contradiction(f"/positions/{k}/exact", "an exact position has no tolerance; give one of the two")
+        Contradiction(f"/positions/{k}/exact", compose("motion-exact-position-with-tolerance"))
         for k, position in enumerate(problem.positions)
         if position.exact and position.tolerance is not None
     ]
@@ -94,16 +96,14 @@ def _check_exact_tolerances(problem: MotionProblem) -> list[Contradiction]:
 def _check_exact_count(problem: MotionProblem) -> list[Contradiction]:
     if problem.method == "exact" and len(problem.positions) > MAX_EXACT_POSITIONS and not problem.approximate:
         return [
-            Contradiction(
-                "/method", f"at most {MAX_EXACT_POSITIONS} positions can be exact; use least_squares for more"
-            )
+            Contradiction("/method", compose("motion-method-exact-too-many-positions", maximum=MAX_EXACT_POSITIONS))
         ]
     if problem.method == "least_squares" and not (problem.approximate or problem.has_few_tolerances):
-        detail = "least_squares needs at least five positions; fewer can be met exactly. Omit it or give tolerances"
+        detail = compose("motion-too-few-positions-to-fit")
         return [Contradiction("/method", detail)]
     held = [k for k, limits in enumerate(problem.limits) if limits == (0.0, 0.0, 0.0)]
     if len(held) > MAX_EXACT_POSITIONS:
-        detail = f"at most {MAX_EXACT_POSITIONS} positions can be exact; give the others a tolerance"
+        detail = compose("motion-too-many-exact-positions", maximum=MAX_EXACT_POSITIONS)
         return [Contradiction(f"/positions/{held[MAX_EXACT_POSITIONS]}", detail)]
     return []
 
@@ -118,10 +118,10 @@ def _check_tolerated_choices(problem: MotionProblem) -> list[Contradiction]:
         if not problem.has_few_tolerances:
             break
         if any(rotation is not None for rotation in side.rotations or []):
-            detail = "need positions that are met exactly; omit the tolerances, or set method to exact"
+            detail = compose("motion-rotations-need-exact-positions")
             contradictions.append(Contradiction(f"/{name}/rotations", detail))
         if side.link_angle is not None and problem.positions[0].tolerance is not None:
-            detail = "needs an exact first position; omit its tolerance, or set method to exact"
+            detail = compose("motion-link-angle-needs-exact-position")
             contradictions.append(Contradiction(f"/{name}/link_angle", detail))
     return contradictions
 
@@ -135,22 +135,20 @@ def _check_fit_choices(problem: MotionProblem) -> list[Contradiction]:
         vector = side.coupler_vector
         if side.rotations is not None or side.link_angle is not None:
             field = "link_angle" if side.rotations is None else "rotations"
-            contradictions.append(Contradiction(f"/{name}/{field}", "cannot be given if positions are fitted"))
+            contradictions.append(Contradiction(f"/{name}/{field}", compose("motion-not-with-fitted-positions")))
         if vector is not None and (vector.length is None or vector.angle is None):
-            contradictions.append(
-                Contradiction(f"/{name}/coupler_vector", "give both length and angle if positions are fitted")
-            )
+            contradictions.append(Contradiction(f"/{name}/coupler_vector", compose("motion-fitted-vector-incomplete")))
         if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
-            contradictions.append(Contradiction(f"/{name}", "give only one pivot if positions are fitted"))
-        contradictions += _check_partial_pivots(name, side, "if positions are fitted")
+            contradictions.append(Contradiction(f"/{name}", compose("motion-fitted-side-two-pivots")))
+        contradictions += _check_partial_pivots(name, side, "motion-fitted-pivot-incomplete")
     if problem.approximate and problem.ground_line is not None:
-        contradictions.append(Contradiction("/ground_line", "cannot be given if positions are fitted"))
+        contradictions.append(Contradiction("/ground_line", compose("motion-not-with-fitted-positions")))
     return contradictions
 
 
-def _check_partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
+def _check_partial_pivots(name: str, side: DyadChoices, message_id: str) -> list[Contradiction]:
     return [
-        Contradiction(f"/{name}/{field}", f"give both coordinates {where}")
+        Contradiction(f"/{name}/{field}", compose(message_id))
         for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot))
         if pivot is not None and to_complete_point(pivot) is None
     ]
@@ -162,38 +160,36 @@ def _check_slider_choices(problem: MotionProblem) -> list[Contradiction]:
     sides = ("input_side", problem.input_side), ("output_side", problem.output_side)
     for name, side in sides:
         if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
-            contradictions.append(Contradiction(f"/{name}/slide_angle", "applies to sliders only; set dyad PR or RP"))
+            contradictions.append(Contradiction(f"/{name}/slide_angle", compose("motion-slide-angle-without-slider")))
         if side.dyad not in ("PR", "RP"):
             continue
         absent = ["link_angle", "rotations"]
         absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
         for field in absent:
             if getattr(side, field) is not None:
-                contradictions.append(Contradiction(f"/{name}/{field}", f"does not apply to a {side.dyad} dyad"))
-        contradictions += _check_partial_pivots(name, side, "of a slider's pivot")
+                contradictions.append(Contradiction(f"/{name}/{field}", compose("motion-not-for-dyad", dyad=side.dyad)))
+        contradictions += _check_partial_pivots(name, side, "motion-slider-pivot-incomplete")
         if problem.ground_line is not None:
-            contradictions.append(Contradiction("/ground_line", "cannot be given with a slider"))
+            contradictions.append(Contradiction("/ground_line", compose("motion-ground-line-with-slider")))
         free = max(4 - len(problem.positions), 0)
         if not problem.approximate and side.count() > free and not side.is_one_pivot:
-            detail = f"fixes {side.count()} numbers, but {len(problem.positions)} positions leave a slider only {free}"
+            detail = compose(
+                "motion-slider-overdetermined", fixed=side.count(), positions=len(problem.positions), free=free
+            )
             contradictions.append(Contradiction(f"/{name}", detail))
     if problem.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
-        contradictions.append(Contradiction("/driver_dyad", "applies only to fourbars; omit the slider"))
+        contradictions.append(Contradiction("/driver_dyad", compose("motion-driver-with-slider")))
     if problem.input_side.dyad == "RP":
-        contradictions.append(Contradiction("/input_side/dyad", "a block cannot be driven; set RP on the output side"))
+        contradictions.append(Contradiction("/input_side/dyad", compose("motion-driven-block")))
     if all(side.dyad in ("PR", "RP") for _, side in sides):
-        contradictions.append(
-            Contradiction("/output_side/dyad", "only one side can have a slider; the other needs pins")
-        )
+        contradictions.append(Contradiction("/output_side/dyad", compose("motion-two-sliders")))
     return contradictions
 
 
 def _check_slider_class(problem: MotionProblem) -> list[Contradiction]:
     if all(side.dyad not in ("PR", "RP") for side in (problem.input_side, problem.output_side)):
         return []
-    faults: list[Contradiction] = problem.constraints.find_class_contradictions(
-        (), "applies only to fourbars; a linkage with a slider has no Barker class"
-    )
+    faults: list[Contradiction] = problem.constraints.find_class_contradictions((), compose("motion-class-with-slider"))
     return faults
 
 
@@ -207,30 +203,38 @@ def _check_free_choices(problem: MotionProblem) -> list[Contradiction]:
             contradictions.append(
                 Contradiction(
                     f"/{name}/rotations",
-                    f"expected {len(problem.positions) - 1} rotations (one for each later position), "
-                    f"got {len(side.rotations)}",
+                    compose(
+                        "motion-rotations-miscounted", expected=len(problem.positions) - 1, given=len(side.rotations)
+                    ),
                 )
             )
         if side.moving_pivot is not None and side.coupler_vector is not None:
-            contradictions.append(
-                Contradiction(
-                    f"/{name}/coupler_vector", "moving_pivot already fixes the coupler vector; give one of the two"
-                )
-            )
+            contradictions.append(Contradiction(f"/{name}/coupler_vector", compose("motion-coupler-vector-with-pivot")))
         elif side.count() > free and not (len(problem.positions) > 3 and side.is_one_pivot):
             contradictions.append(
                 Contradiction(
                     f"/{name}",
-                    f"fixes {side.count()} numbers, but {len(problem.positions)} positions leave {free} free choices "
-                    f"per side; omit some{' or give a single pivot' if len(problem.positions) > 3 else ''}",
+                    compose(
+                        "motion-side-overdetermined-pivot-possible"
+                        if len(problem.positions) > 3
+                        else "motion-side-overdetermined",
+                        fixed=side.count(),
+                        positions=len(problem.positions),
+                        free=free,
+                    ),
                 )
             )
         elif problem.ground_line is not None and to_complete_point(side.fixed_pivot) is None and side.count() >= free:
             contradictions.append(
                 Contradiction(
                     "/ground_line",
-                    f"uses up one more number, but {len(problem.positions)} positions leave {free} free choices for "
-                    f"{name}, which already fixes {side.count()}",
+                    compose(
+                        "motion-ground-line-overdetermined",
+                        positions=len(problem.positions),
+                        free=free,
+                        side=name,
+                        fixed=side.count(),
+                    ),
                 )
             )
     return contradictions
@@ -239,12 +243,15 @@ def _check_free_choices(problem: MotionProblem) -> list[Contradiction]:
 def _check_pivot_regions(problem: MotionProblem) -> list[Contradiction]:
     contradictions = []
     for path, pivot in _list_given_pivots(problem):
-        region = getattr(problem.constraints, f"{path.rsplit('/')[-1]}_region")
+        field = f"{path.rsplit('/')[-1]}_region"
+        region = getattr(problem.constraints, field)
         # An open coordinate cannot lie outside the region: replace it by a bound of the region.
         if region is not None:
             x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
             if not region.contains(complex(x, y)):
-                contradictions.append(Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region"))
+                contradictions.append(
+                    Contradiction(path, compose("motion-pivot-outside-region", region=f"constraints.{field}"))
+                )
     return contradictions
 
 
@@ -267,11 +274,9 @@ def _check_ground_line(problem: MotionProblem) -> list[Contradiction]:
             # A line along the open axis does not fix the open coordinate, so the pivot remains undetermined.
             parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL_TOLERANCE
             if whole is not None and abs(line.offset(whole)) > ON_LINE_TOLERANCE * problem.task_size:
-                contradictions.append(Contradiction(path, "does not lie on ground_line"))
+                contradictions.append(Contradiction(path, compose("motion-pivot-off-ground-line")))
             elif whole is None and parallel:
-                contradictions.append(
-                    Contradiction(path, "ground_line is parallel to the open coordinate; give the other coordinate")
-                )
+                contradictions.append(Contradiction(path, compose("motion-ground-line-parallel")))
     return contradictions
 
 
@@ -281,6 +286,6 @@ def _check_coinciding_pivots(problem: MotionProblem) -> list[Contradiction]:
         one, other = getattr(problem.input_side, pivot), getattr(problem.output_side, pivot)
         if to_complete_point(one) is not None and one == other:
             contradictions.append(
-                Contradiction(f"/output_side/{pivot}", f"equals the input side's {pivot}; move one of the two")
+                Contradiction(f"/output_side/{pivot}", compose("motion-pivots-coincide", pivot=pivot))
             )
     return contradictions

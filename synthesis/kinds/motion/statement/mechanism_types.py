@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from kinematics.message import compose
 from synthesis.kinds.motion.statement.dyad_choices import to_complete_point
 from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_SIXBAR_POSITIONS
 from synthesis.model.linkage.type_choice import (
@@ -63,13 +64,10 @@ def find_motion_sixbar_contradictions(problem: MotionProblem) -> list[Contradict
     listed: list[Contradiction] = []
     stated = problem.mechanisms
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
-        detail = "applies only to sixbars; list only sixbar types in mechanisms"
+        detail = compose("motion-chain-without-sixbars")
         listed.append(Contradiction("/chain", detail))
     elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.is_least_squares):
-        detail = (
-            f"applies only to at most {MAX_EXACT_POSITIONS} positions that are met exactly or within tolerances; omit "
-            "it"
-        )
+        detail = compose("motion-chain-too-many-positions", maximum=MAX_EXACT_POSITIONS)
         listed.append(Contradiction("/chain", detail))
     if not (isinstance(stated, list) and select_requested_types(stated, SIXBARS)):
         return [*listed, *_check_types(problem)]
@@ -82,7 +80,7 @@ def find_motion_sixbar_contradictions(problem: MotionProblem) -> list[Contradict
 def list_unsupported(problem: MotionProblem) -> Iterator[Contradiction]:
     """Yield the given fields that sixbars do not support."""
     if not problem.sixbars_possible:
-        detail = f"sixbars support at most {MAX_SIXBAR_POSITIONS} positions; request fourbars for more"
+        detail = compose("motion-sixbar-too-many-positions", maximum=MAX_SIXBAR_POSITIONS)
         yield Contradiction("/mechanisms", detail)
     for name, of_fourbars in (
         ("input_side", problem.input_side != type(problem.input_side)()),
@@ -91,7 +89,7 @@ def list_unsupported(problem: MotionProblem) -> Iterator[Contradiction]:
         ("driver_dyad", problem.driver is not None),
     ):
         if of_fourbars:
-            detail = "applies only to fourbars; omit it, or remove the sixbars from mechanisms"
+            detail = compose("motion-not-for-sixbars")
             yield Contradiction(f"/{name}", detail)
     yield from find_unsupported_by_sixbars(problem)
 
@@ -100,11 +98,9 @@ def list_unsupported_stephenson_2(problem: MotionProblem) -> Iterator[Contradict
     """Yield the given fields that Stephenson II sixbars, or their search, do not support."""
     yield from refuse_class(problem.constraints)
     if problem.constraints.full_rotation:
-        yield Contradiction(
-            "/constraints/full_rotation", "is not supported for Stephenson II sixbars; omit it, or request other types"
-        )
+        yield Contradiction("/constraints/full_rotation", compose("motion-not-for-stephenson-2"))
     if problem.chain is not None:
-        detail = "applies only to Watt I, Stephenson I and Stephenson III sixbars; request one of these, or omit it"
+        detail = compose("motion-chain-type-unsupported")
         yield Contradiction("/chain", detail)
 
 
@@ -115,12 +111,12 @@ def _check_types(problem: MotionProblem) -> list[Contradiction]:
         return []
     slider = problem.slider is not None
     if slider and "slider_crank" not in stated:
-        return [Contradiction("/mechanisms", "a side has a slider; add slider_crank to mechanisms")]
+        return [Contradiction("/mechanisms", compose("motion-slider-not-listed"))]
     if problem.slider == "RP":
-        detail = "an RP dyad makes an inverted slider-crank, which no list can name; omit mechanisms"
+        detail = compose("motion-inverted-slider-not-listable")
         return [Contradiction("/mechanisms", detail)]
     if "fourbar" not in stated and not slider and problem.output_side.dyad == "RR":
-        return [Contradiction("/mechanisms", "both sides have pins; add fourbar to mechanisms")]
+        return [Contradiction("/mechanisms", compose("motion-fourbar-not-listed"))]
     return []
 
 
@@ -138,6 +134,6 @@ def _check_chain_reach(problem: MotionProblem) -> list[Contradiction]:
         # H₂ moves with the body; the chain must span its distance from G in every exact position.
         reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
         if position.tolerance is None and not abs(first - second) < reach < first + second:
-            detail = f"cannot span G to H₂ at position {k}: the distance is {reach:.6g} {problem.length_unit}"
+            detail = compose("motion-chain-too-short", position=k, distance=f"{reach:.6g}", unit=problem.length_unit)
             return [Contradiction("/chain/links", detail)]
     return []

@@ -6,6 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE
 from synthesis.model.problem import Coordinate, Degrees, Flag, PositiveLength, Sizable, Statement
 
@@ -29,7 +30,7 @@ class Tolerance(Statement):
     @model_validator(mode="after")
     def _check_not_empty(self) -> Self:
         if self.x is None and self.y is None and self.angle is None:
-            raise ValueError("give a tolerance of x, y or angle; omit it to meet the position exactly")
+            raise ValueError(compose("motion-tolerance-empty"))
         return self
 
 
