@@ -7,6 +7,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR, refuse_class
@@ -236,57 +237,48 @@ class DwellProblem(LinkageProblem):
         """Return requests that exclude one another."""
         found = [*self.find_contradicting_constraints(), *self._find_dwell_contradictions()]
         if self.output.type == "slider" and self.mechanism == "straight_slot":
-            found.append(Contradiction("/mechanism", "a slotted output swings; choose pseudo_arc or a rocker"))
+            found.append(Contradiction("/mechanism", compose("dwell-slot-does-not-slide")))
         if self.output.type == "slider" and self.mechanism == UNCLASSED_SIXBAR:
-            found.append(Contradiction("/mechanism", "its output swings; choose pseudo_arc, watt_2 or a rocker"))
+            found.append(Contradiction("/mechanism", compose("dwell-stephenson-does-not-slide")))
         if self.output.type == "slider" and self.crank is not None:
-            found.append(Contradiction("/crank", "the stroke determines the size; leave the crank out"))
+            found.append(Contradiction("/crank", compose("dwell-crank-with-stroke")))
         size, field = (
             (self.way, "/output/stroke") if self.output.type == "slider" else (self.crank or DEFAULT_CRANK, "/crank")
         )
         # Differences of large coordinates would lose the digits of the crank.
         if self.pivot is not None and size < CANCELLATION_TOLERANCE * max(map(abs, self.pivot)):
-            found.append(
-                Contradiction(field, "too short relative to the coordinates of the pivot; move the origin nearer")
-            )
+            found.append(Contradiction(field, compose("dwell-size-lost-in-coordinates")))
         if self.tolerance is not None and self.tolerance >= self.way:
-            found.append(Contradiction("/tolerance", "not less than the output's range; no dwell would be needed"))
+            found.append(Contradiction("/tolerance", compose("dwell-tolerance-covers-range")))
         classes = {turning for _, turning in self.searches if turning is not None}
         if not classes:
             return [*found, *refuse_class(self.constraints)]
-        searched = "crank-rockers and double cranks" if "double_crank" in classes else "crank-rockers"
-        reason = f"the crank turns through: only {searched} are searched"
+        reason = compose("dwell-turning-cranks-only" if "double_crank" in classes else "dwell-crank-rockers-only")
         return [*found, *self.constraints.find_class_contradictions(classes, reason)]
 
     def _find_dwell_contradictions(self) -> list[Contradiction]:
         """Return contradictory dwell requests."""
         if self.dwells is None:
             if self.dwell_angle is None:
-                return [Contradiction("/dwell_angle", "give the length of the dwell by dwell_angle, or use dwells")]
+                return [Contradiction("/dwell_angle", compose("dwell-angle-missing"))]
             if self.count * self.dwell_angle < 360.0:
                 return []
-            detail = f"{self.count} dwells of {self.dwell_angle:g}° leave no part of the turn for the movement"
+            detail = compose("dwell-angles-fill-turn", count=self.count, angle=f"{self.dwell_angle:g}")
             return [Contradiction("/dwell_angle", detail)]
         found = []
         if self.dwell_angle is not None:
-            found.append(Contradiction("/dwell_angle", "dwells gives the length of each; leave this out"))
+            found.append(Contradiction("/dwell_angle", compose("dwell-angle-with-dwells")))
         if self.count not in (1, len(self.dwells)):
-            found.append(Contradiction("/count", "dwells determines their number; leave this out"))
+            found.append(Contradiction("/count", compose("dwell-count-with-dwells")))
         total = sum(dwell.angle for dwell in self.dwells)
         if total >= 360.0:
-            found.append(
-                Contradiction("/dwells", f"dwells of {total:g}° in total leave no part of the turn for the movement")
-            )
+            found.append(Contradiction("/dwells", compose("dwell-dwells-fill-turn", angle=f"{total:g}")))
         for (n, one), (k, other) in combinations(enumerate(self.dwells), 2):
             apart = abs(one.place - other.place)
             if apart < MIN_PLACE_SEPARATION:
-                detail = f"less than a tenth of the range from dwell {n + 1}; separate them further"
-                found.append(
-                    Contradiction(f"/dwells/{k}/at", "the same place as dwell " + f"{n + 1}" if not apart else detail)
-                )
+                message = "dwell-places-too-near" if apart else "dwell-places-equal"
+                found.append(Contradiction(f"/dwells/{k}/at", compose(message, dwell=n + 1)))
             # An output that may move from one place to the other would satisfy both with one dwell.
             elif apart * self.way <= self.max_movement:
-                found.append(
-                    Contradiction(f"/dwells/{k}/at", f"within the tolerance of dwell {n + 1}; make them one dwell")
-                )
+                found.append(Contradiction(f"/dwells/{k}/at", compose("dwell-places-within-tolerance", dwell=n + 1)))
         return found

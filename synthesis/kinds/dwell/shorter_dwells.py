@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from kinematics.message import compose
 from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.dwell.quantities import list_angles
 from synthesis.model.answer import Reachable
 from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import TaskEasing
@@ -21,7 +23,8 @@ def _list_dwells(problem: DwellProblem) -> JsonObject:
 
 def _describe_longest_dwells(reachable: Reachable) -> str:
     longest = reachable.dwell_angles or ([] if reachable.dwell_angle is None else [reachable.dwell_angle])
-    return f" The longest dwells found are {' and '.join(f'{angle:.4g}°' for angle in longest)}." if longest else ""
+    angles = list_angles([f"{angle:.4g}" for angle in longest])
+    return f" {compose('dwell-longest-dwells', angles=angles)}" if longest else ""
 
 
 SHORTER_DWELLS = TaskEasing(_shorten_dwells, _list_dwells, _describe_longest_dwells)

@@ -11,9 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
 from synthesis.kinds.dwell.motion.outputs import DWELL_SAMPLE_COUNT, Carrier, Kind, Task, evaluate_shapes
 from synthesis.kinds.dwell.problem import HIGH_PLACE, LOW_PLACE, DwellProblem, Turning
+from synthesis.kinds.dwell.quantities import list_angles, write_output
 from synthesis.kinds.dwell.refine import stephenson_2
 from synthesis.kinds.dwell.refine.refinement import SixbarShape, adjust_range, build_mechanism
 from synthesis.kinds.dwell.refine.stephenson_2_cycle import C
@@ -21,7 +23,6 @@ from synthesis.kinds.dwell.starts import stephenson_2_starts
 from synthesis.kinds.dwell.starts.coupler_curve_starts import Requirements, Start, find_starts
 from synthesis.kinds.dwell.starts.placed_starts import find_placed_starts
 from synthesis.kinds.dwell.verification import verify_dwell
-from synthesis.model.counting import format_count
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR
 from synthesis.numerics.narrowing import find_narrowest_band
@@ -72,9 +73,16 @@ MAX_COORDINATE = 4.0
 MAX_VIOLATION = 1e-4
 """Maximum violation of a constraint after refinement; verification decides."""
 
-CURVE_SOURCE = "coupler curves drawn at random, outputs on their arcs and lines"
-RANDOM_SOURCE = "sixbars drawn at random"
-"""Sources of the starts, in words."""
+CURVE_METHOD, RANDOM_METHOD = "dwell-method-from-curves", "dwell-method-from-random-sixbars"
+"""Messages that name the method by the source of its starts."""
+
+TYPE_NAMES = {
+    "pseudo_arc": "dwell-pseudo-arc",
+    "straight_slot": "dwell-straight-slot",
+    "watt_2": "dwell-watt-2",
+    UNCLASSED_SIXBAR: "dwell-stephenson-2",
+}
+"""Messages with the names of the types."""
 
 OUTPUT_KINDS: dict[tuple[str, str], Kind] = {
     ("pseudo_arc", "rocker"): "rocker",
@@ -134,14 +142,14 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     sifting = CandidateLog[DwellDesign](problem, undriven="crank_does_not_turn")
     searches = _list_searches(problem)
     for n, search in enumerate(searches):
-        name = search.name.replace("_", " ")
+        name = compose(TYPE_NAMES[search.name])
         if search.kind == "triad":
-            progress(n / len(searches), f"driving random sixbars ({name})")
+            progress(n / len(searches), compose("dwell-driving-random-sixbars", type=name))
         else:
-            progress(n / len(searches), f"driving outputs on coupler curves ({name})")
+            progress(n / len(searches), compose("dwell-driving-outputs", type=name))
         begun = _find_starts(problem, search, rng)
         span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
-        candidates = report_candidates(begun, progress, span, "dwell-progress-refining-starts")
+        candidates = report_candidates(begun, progress, span, "dwell-refining")
         # Every type gets its own share of designs, so that none is crowded out by the first.
         enough = len(sifting.passed) + SUFFICIENT_DESIGNS
         # Few starts of placed dwells become still enough: refine many, and drive only the best.
@@ -156,11 +164,11 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
             sifting.reject(OUTRANKED_REASON, len(stillest) - driven)
         else:
             sifting.verify_candidates(candidates, partial(_drive_start, problem, search.kind), enough)
-    progress(1.0, "verified")
-    drawn = RANDOM_SOURCE if any(search.kind == "triad" for search in searches) else CURVE_SOURCE
+    progress(1.0, compose("dwell-verified"))
+    method = RANDOM_METHOD if any(search.kind == "triad" for search in searches) else CURVE_METHOD
     return DwellResult(
         designs=sifting.select_designs(partial(_rank_designs, problem)),
-        search=sifting.build_search(f"{drawn}, sequential linear programming"),
+        search=sifting.build_search(compose(method)),
         summary=_describe_result(problem, sifting),
     )
 
@@ -357,18 +365,18 @@ def _get_bounds(kind: Kind, start: Start, ratio: float) -> tuple[Real, Real]:
 
 
 def _describe_result(problem: DwellProblem, sifting: CandidateLog[DwellDesign]) -> str:
-    unit = f" {problem.length_unit}" if problem.output.type == "slider" else "°"
     if not sifting.passed:
-        reasons = sifting.format_reasons() or "none comes to rest"
-        return f"No dwell sixbar was found that satisfies all constraints ({reasons}). One may still exist."
+        return compose("dwell-none-found", reasons=sifting.format_reasons() or compose("dwell-none-rests"))
     shown, count = _rank_designs(problem, sifting.passed), len(sifting.passed)
     if problem.is_listed_later:
-        best, which = select_best(shown, _get_jitter), "stillest"
+        best, message = select_best(shown, _get_jitter), "dwell-sixbars-found-stillest"
     else:
-        best, which = sort_usable_first(problem, shown[: problem.max_designs]).designs[0], "first"
-    widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)
-    return (
-        f"{format_count(count, 'dwell sixbar')} found. In the {which} the output moves by at most "
-        f"{best.metrics.jitter:.2g}{unit} during the dwell, and stays within {problem.max_movement:.3g}{unit} over "
-        f"{widths} of the crank."
+        best = sort_usable_first(problem, shown[: problem.max_designs]).designs[0]
+        message = "dwell-sixbars-found"
+    return compose(
+        message,
+        count=count,
+        movement=write_output(problem, f"{best.metrics.jitter:.2g}"),
+        tolerance=write_output(problem, f"{problem.max_movement:.3g}"),
+        angles=list_angles([f"{rest.width:.1f}" for rest in best.targets]),
     )

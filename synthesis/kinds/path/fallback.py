@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.statement.mechanism_types import TYPE_NAMES
@@ -49,7 +50,7 @@ def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve,
     near = [design for design in second.designs if _compute_max_miss(design) <= MAX_FIT_MISS * problem.task_size]
     if not any(design.verification.passed for design in near):
         return first.model_copy(
-            update={"summary": f"{first.summary}{_describe_misses(second.designs, problem.length_unit)}"}
+            update={"summary": join_messages([first.summary, _describe_misses(second.designs, problem.length_unit)])}
         )
     account = second.search.model_copy(
         update={
@@ -62,17 +63,19 @@ def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve,
     counted = {name: getattr(first, name) for name in ("triples", "given_pivots", "family", "timed")}
     # Failed exact designs are shown only on request, behind the fits.
     shown = [*near, *first.designs] if problem.include_failed else near
-    name = TYPE_NAMES["sixbar" if problem.sixbars else problem.mechanism]
-    begun = (
-        f"No {name}{'' if first.search.complete else ' was found that'} meets the points exactly and satisfies all "
-        "constraints"
+    # Only a complete search proves that no linkage exists.
+    summary = compose(
+        "path-none-exact-so-fitted" if first.search.complete else "path-none-exact-found-so-fitted",
+        type=compose(TYPE_NAMES["sixbar" if problem.sixbars else problem.mechanism]),
+        fits=second.summary,
+        exact=first.summary,
     )
     return second.model_copy(
         update={
             **counted,
             "designs": shown[: problem.max_designs],
             "search": account,
-            "summary": f"{begun}; the points are fitted instead. {second.summary} Exact search: {first.summary}",
+            "summary": summary,
         }
     )
 
@@ -87,10 +90,7 @@ def _describe_misses(fitted: list[PathDesign], unit: str) -> str:
     misses = [_compute_max_miss(design) for design in fitted if design.verification.passed]
     if not misses:
         return ""
-    return (
-        f" The best least-squares fit misses a point by {min(misses):.4g} {unit}, more than {MAX_FIT_MISS:.0%} of the "
-        "task's size; choose method least_squares to get such designs."
-    )
+    return compose("path-fits-miss-points", miss=f"{min(misses):.4g}", unit=unit, share=f"{100.0 * MAX_FIT_MISS:.0f}")
 
 
 def _add_counts(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:

@@ -11,6 +11,7 @@ from functools import partial
 
 import numpy as np
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.curve.solver import fit_by_shape, fit_stance_from_points
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.points.fit import Candidate, build_mechanism, build_point_task, descend_from, find_minima
@@ -25,7 +26,6 @@ from synthesis.kinds.path.task.ranking import (
     find_min_error,
 )
 from synthesis.kinds.path.verification.fourbar import verify_path
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.results.candidate_log import report_candidates
@@ -66,7 +66,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     else:
         minima = find_minima(problem, task, np.random.default_rng(problem.seed), first)
     fits.verify_candidates(
-        report_candidates(minima, first, (0.9, 1.0), "path-progress-driving-linkage"),
+        report_candidates(minima, first, (0.9, 1.0), "path-driving-linkages"),
         verify_candidate,
         # Twice the requested number, because some of the nearest will be dropped for straying between the points.
         enough=max(2 * problem.max_designs, MIN_DRIVEN),
@@ -76,15 +76,13 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     # Prescribed crank angles leave no freedom for a curve of another shape.
     if problem.start is None and not problem.prescribed and fits.is_astray():
         linkages = fit_by_shape(problem, second)
-        fits.verify_candidates(
-            report_candidates(linkages, second, (0.8, 1.0), "path-progress-driving-linkage"), verify_linkage
-        )
+        fits.verify_candidates(report_candidates(linkages, second, (0.8, 1.0), "path-driving-linkages"), verify_linkage)
     kept = drop_straying(fits.passed, problem)
     # For an open curve the points alone may be what the client means.
     if fits.passed and not problem.closed and (nearest := _find_nearest(fits.passed)) not in kept:
         kept.append(nearest)
     fits.withdraw(kept, FAR_REASON)
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     return fits.build_result("least_squares", complete=False, summary=fits.describe_result())
 
 
@@ -127,31 +125,34 @@ class _PointFits(PathCandidateLog):
 
     def describe_result(self) -> str:
         """Describe the result in words."""
-        n, unit = len(self.problem.points), self.problem.length_unit
-        timing = "at their crank angles" if self.problem.prescribed else "in order"
-        if self.passed:
-            best = select_best(self.passed, partial(compute_error, problem=self.problem)).metrics
-            passed, of = len(self.passed), format_count(self.candidates, "fitted linkage")
-            text = (
-                f"{format_integer(passed)} of {of} {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The "
-                f"best passes the {n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} "
-                f"{unit} and a maximum of {best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} "
-                f"{unit}²)."
-            )
-            if best.excursion:
-                text += f" Between the given points the curve strays by up to {best.excursion:.4g} {unit}."
-            if self.rejected[FAR_REASON]:
-                others = format_count(self.rejected[FAR_REASON], "other is", "others are")
-                text += f" {others} near the points, but far from their course between them."
-        else:
-            rejected = self.format_reasons() or "none"
-            text = (
-                f"None of {format_count(self.candidates, 'fitted linkage')} satisfies all constraints "
-                f"(rejected: {rejected})."
-            )
-        if self.problem.start is not None:
-            return text + " Least squares descended from the given start; a nearer linkage may exist elsewhere."
-        return text + " Least squares descended from many starts; a nearer linkage may exist that none of them reaches."
+        started = compose(
+            "path-descended-from-many-starts" if self.problem.start is None else "path-descended-from-given-start"
+        )
+        if not self.passed:
+            failure = compose("path-no-fits")
+            if self.rejected:
+                failure = compose("path-no-fit-passed", count=self.candidates, reasons=self.format_reasons())
+            return join_messages([failure, started])
+        unit = self.problem.length_unit
+        best = select_best(self.passed, partial(compute_error, problem=self.problem)).metrics
+        return join_messages(
+            [
+                compose("path-fits-passed", passed=len(self.passed), count=self.candidates),
+                compose(
+                    "path-best-fit-with-timing" if self.problem.prescribed else "path-best-fit-in-order",
+                    points=len(self.problem.points),
+                    rms_distance=f"{best.rms_distance:.4g}",
+                    max_distance=f"{best.max_distance:.4g}",
+                    sum_of_squares=f"{best.sum_of_squares:.6g}",
+                    unit=unit,
+                ),
+                compose("path-curve-strays", excursion=f"{best.excursion:.4g}", unit=unit) if best.excursion else "",
+                compose("path-fits-far-between-points", count=self.rejected[FAR_REASON])
+                if self.rejected[FAR_REASON]
+                else "",
+                started,
+            ]
+        )
 
 
 def _find_nearest(designs: list[PathDesign]) -> PathDesign:

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.kinds.path.statement.mechanism_types import (
     SIXBAR_TYPES,
     Mechanisms,
@@ -108,7 +109,7 @@ class PathPivots(Statement):
     @model_validator(mode="after")
     def _check_distinct(self) -> Self:
         if self.input is not None and self.input == self.output and None not in self.input:
-            raise ValueError("the fixed pivots must differ")
+            raise ValueError(compose("path-fixed-pivots-equal"))
         return self
 
 
@@ -302,9 +303,9 @@ class PathProblem(LinkageProblem):
         """Places of P that a manufactured linkage must reproduce, at free inputs if timing is free; or why it is not
         supported."""
         if self.mechanism == "geared_fivebar":
-            return "supports fourbars and slider-cranks, not geared fivebars"
+            return compose("path-manufacture-not-for-fivebars")
         if self.placement_free:
-            return "does not support curves with a free place; leave placement_free out"
+            return compose("path-manufacture-not-for-free-place")
         return ManufactureTask(True, False, not self.prescribed, len(self.points))
 
     def build_required_targets(self, design: Any) -> RequiredTargets:
@@ -385,21 +386,18 @@ class PathProblem(LinkageProblem):
         given = [k for k, point in enumerate(self.points) if point.crank_angle is not None]
         if not self.prescribed:
             faults = [
-                Contradiction(
-                    f"/points/{k}/crank_angle", 'timing is free; set "timing": "prescribed", or leave this out'
-                )
-                for k in given[:1]
+                Contradiction(f"/points/{k}/crank_angle", compose("path-angle-with-free-timing")) for k in given[:1]
             ]
             for name, value, default in (
                 ("crank_phase", self.crank_phase, "free"),
                 ("crank_direction", self.crank_direction, "as_given"),
             ):
                 if value != default:
-                    faults.append(Contradiction(f"/{name}", "applies to prescribed timing only; the timing is free"))
+                    faults.append(Contradiction(f"/{name}", compose("path-prescribed-timing-only")))
             return faults
         missing = [k for k in range(len(self.points)) if k not in set(given)]
         if missing:
-            return [Contradiction(f"/points/{k}/crank_angle", "timing is prescribed; give an angle") for k in missing]
+            return [Contradiction(f"/points/{k}/crank_angle", compose("path-angle-missing")) for k in missing]
         return [*self._check_equal_angles(), *self._check_turns()]
 
     def _check_equal_angles(self) -> list[Contradiction]:
@@ -410,10 +408,10 @@ class PathProblem(LinkageProblem):
                 round(_normalize_turn(angle) / ANGLE_TOLERANCE) % round(360.0 / ANGLE_TOLERANCE) for angle in angles
             }
             if len(different) < 3:
-                return [Contradiction("/points", "prescribed timing needs at least three different crank angles")]
+                return [Contradiction("/points", compose("path-too-few-angles"))]
             return []
         return [
-            Contradiction(f"/points/{k}/crank_angle", f"equal to that of point {j}; exact points need different angles")
+            Contradiction(f"/points/{k}/crank_angle", compose("path-angles-repeat", point=j))
             for k, later in enumerate(angles)
             for j, earlier in enumerate(angles[:k])
             if abs(math.remainder(later - earlier, 360.0)) <= ANGLE_TOLERANCE
@@ -424,10 +422,7 @@ class PathProblem(LinkageProblem):
         if self.constraints.in_order and abs(turned[-1] - turned[0]) > 0.0:
             steps = [other - one for one, other in pairwise(turned)]
             if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + ANGLE_TOLERANCE):
-                detail = (
-                    "the crank angles do not follow one another within one turn; "
-                    'reorder the points, or set "in_order": false'
-                )
+                detail = compose("path-angles-out-of-order")
                 return [Contradiction("/points", detail)]
         return []
 
@@ -438,14 +433,14 @@ class PathProblem(LinkageProblem):
         if self.is_fitted:
             different = sum(not equal[k, :k].any() for k in range(len(points)))
             if different < 3:
-                return [Contradiction("/points", f"only {different} of them differ; at least three must differ")]
+                return [Contradiction("/points", compose("path-too-few-points-differ", count=different))]
             return []
         if self.prescribed:
             if equal.all():
-                return [Contradiction("/points", "all equal; points must differ")]
+                return [Contradiction("/points", compose("path-points-all-equal"))]
             return []
         return [
-            Contradiction(f"/points/{k}", f"equal to point {j}; points must differ")
+            Contradiction(f"/points/{k}", compose("path-points-repeat", point=j))
             for k in range(len(points))
             for j in range(k)
             if equal[k, j]
@@ -453,14 +448,15 @@ class PathProblem(LinkageProblem):
 
     def _check_method(self) -> list[Contradiction]:
         if self.placement_free and not (self.is_matched and self.mechanism == "fourbar"):
-            return [Contradiction("/placement_free", "applies to curve_match by fourbars only; leave it out")]
+            return [Contradiction("/placement_free", compose("path-free-place-for-matched-fourbars"))]
         if self.is_matched:
             if self.prescribed:
-                return [Contradiction("/timing", "a curve matched as a whole has no timing; leave it free")]
+                return [Contradiction("/timing", compose("path-matched-curve-with-timing"))]
             return []
         if self.method == "exact" and len(self.points) > self.most_exact:
-            timing = "with prescribed timing" if self.prescribed else "with free timing"
-            detail = f"at most {self.most_exact} points can be met exactly {timing} here; fit them by least_squares"
+            detail = compose(
+                "path-too-many-points-with-timing" if self.prescribed else "path-too-many-points", count=self.most_exact
+            )
             return [Contradiction("/method", detail)]
         return []
 
@@ -469,10 +465,10 @@ class PathProblem(LinkageProblem):
         if not given:
             return []
         if self.method == "exact":
-            detail = "points that are met exactly have none; fit them by least_squares, or leave the tolerances out"
+            detail = compose("path-exact-points-with-tolerances")
             return [Contradiction(f"/points/{given[0]}/tolerance", detail)]
         open_ones = sorted(set(range(len(self.points))) - set(given))
-        detail = "missing, though other points have one; give it for all points, or for none"
+        detail = compose("path-tolerance-missing")
         return [Contradiction(f"/points/{k}/tolerance", detail) for k in open_ones[:1]]
 
     def _check_pivots(self) -> list[Contradiction]:
@@ -489,7 +485,7 @@ class PathProblem(LinkageProblem):
                     region.x[0] if pivot[0] is None else pivot[0], region.y[0] if pivot[1] is None else pivot[1]
                 )
                 if not region.contains(at):
-                    faults.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
+                    faults.append(Contradiction(f"/fixed_pivots/{side}", compose("path-pivot-outside-region")))
         return faults
 
     def _check_mechanism(self) -> list[Contradiction]:
@@ -498,33 +494,31 @@ class PathProblem(LinkageProblem):
         if self.gear_ratio is not None:
             turns = self.gear_ratio * np.arange(1.0, MAX_GEAR_TURNS + 1.0)
             if self.mechanism != "geared_fivebar":
-                faults.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
-            elif self.gear_ratio == 0.0:
                 faults.append(
-                    Contradiction("/gear_ratio", "with an output that does not turn it is a fourbar; request that")
+                    Contradiction("/gear_ratio", compose("path-mechanism-without-gears", mechanism=self.mechanism))
                 )
+            elif self.gear_ratio == 0.0:
+                faults.append(Contradiction("/gear_ratio", compose("path-output-does-not-turn")))
             elif float(np.abs(turns - np.round(turns)).min()) > ANGLE_TOLERANCE:
-                detail = f"the gears do not repeat within {MAX_GEAR_TURNS} turns; give a ratio of small whole numbers"
+                detail = compose("path-gears-do-not-repeat", turns=MAX_GEAR_TURNS)
                 faults.append(Contradiction("/gear_ratio", detail))
         if self.mechanism == "fourbar":
             return faults
         if self.prescribed:
-            faults.append(
-                Contradiction("/timing", f"only fourbars support prescribed timing; free it for a {self.mechanism}")
-            )
+            faults.append(Contradiction("/timing", compose("path-timing-for-fourbars-only", mechanism=self.mechanism)))
         faults += self.constraints.find_class_contradictions(
-            (), f"classifies fourbars; a {self.mechanism} has no class"
+            (), compose("path-mechanism-without-class", mechanism=self.mechanism)
         )
         if self.constraints.coupler_point is not None:
-            detail = f"limits the place of P on a fourbar's coupler; leave it out for a {self.mechanism}"
+            detail = compose("path-coupler-point-for-fourbars-only", mechanism=self.mechanism)
             faults.append(Contradiction("/constraints/coupler_point", detail))
         if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
-            faults.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
+            faults.append(Contradiction("/fixed_pivots/output", compose("path-slider-crank-with-output-pivot")))
         return faults
 
     def _check_closed(self) -> list[Contradiction]:
         if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):
-            detail = f"the input of a {self.constraints.grashof} linkage does not turn through; a closed curve needs it"
+            detail = compose("path-class-does-not-turn", grashof=self.constraints.grashof)
             return [Contradiction("/constraints/grashof", detail)]
         return []
 

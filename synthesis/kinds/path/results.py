@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification.fourbar import verify_path
@@ -72,9 +73,8 @@ class PathCandidateLog(CandidateLog[PathDesign]):
         if self.passed:
             return ""
         if not complete:
-            return " Others may exist."
-        none = "none of them does both" if self.problem.method == "auto" else "no design exists"
-        return f" These are all fourbars, so {none}."
+            return compose("path-others-may-exist")
+        return compose("path-no-fourbar-does-both" if self.problem.method == "auto" else "path-no-design-exists")
 
     def build_result(self, method: str, *, complete: bool, summary: str) -> PathResult:
         """Build the result."""
@@ -91,6 +91,11 @@ class PathCandidateLog(CandidateLog[PathDesign]):
     def select_distinct(self, designs: list[PathDesign]) -> list[PathDesign]:
         """Return designs without duplicates."""
         return select_distinct_designs(designs, len(designs), self.apart * self.problem.task_size)
+
+
+def join_sentences(sentences: Iterable[str]) -> str:
+    """Join the sentences of a summary; they may begin with a space, and empty ones are left out."""
+    return join_messages(sentence.lstrip() for sentence in sentences)
 
 
 def select_distinct_designs(designs: list[PathDesign], count: int, apart: float) -> list[PathDesign]:

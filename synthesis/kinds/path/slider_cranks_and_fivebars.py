@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, compute_lengths
 from synthesis.fit.coupler_curve import place_linkage
 from synthesis.kinds.path.curve.fits import list_cognates
@@ -32,10 +33,10 @@ from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.curve_constraints import compute_pivot_limits
 from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend, measure_pivot_violations
+from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.task.ranking import FAR_REASON, USABLE_ANGLE, build_ordering, drop_straying
 from synthesis.kinds.path.task.target_curve import interpolate_crank_angles, sample_smooth_steps
 from synthesis.kinds.path.verification.linkage import verify_traced
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import (
     CouplerPoint,
@@ -162,7 +163,7 @@ def _find_fits(search: _Search, drawn: int, followed: int, again: int, progress:
     for n, (family, ratio) in enumerate(tasks):
 
         def report_comparison(share: float, n: int = n) -> None:
-            progress((n + 0.8 * share) / len(tasks), "shapes of linkages compared")
+            progress((n + 0.8 * share) / len(tasks), compose("path-shapes-compared"))
 
         rng = np.random.default_rng([problem.seed, n + len(tasks) * again])
         compared = compare_shapes(
@@ -202,7 +203,7 @@ def _find_fits(search: _Search, drawn: int, followed: int, again: int, progress:
                 mechanism = _build_mechanism(family, fine.x[k], float(sign[k]), ratio, theta_k, centre, size)
                 if mechanism is not None:
                     fits.append(((not arrived[k], float(fine.cost[k])), mechanism))
-        progress((n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
+        progress((n + 1.0) / len(tasks), compose("path-linkages-fitted", count=len(fits)))
     return fits
 
 
@@ -426,25 +427,30 @@ def _build_result(problem: PathProblem, mechanisms: list[Mechanism], progress: P
     in_rank = build_ordering(problem)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates(mechanisms, progress, (0.7, 1.0), "path-progress-linkages-driven"),
+        report_candidates(mechanisms, progress, (0.7, 1.0), "path-linkages-driven"),
         partial(verify_traced, problem),
     )
     if problem.is_fitted:
         sifting.withdraw(drop_straying(sifting.passed, problem), FAR_REASON)
-    progress(1.0, "verified")
-    name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ")
-    fitted = format_count(sifting.candidates, f"{name} that was", f"{name}s that were")
-    satisfy = choose_word(sifting.accepted, "satisfies", "satisfy")
-    text = f"{format_integer(sifting.accepted)} of {fitted} fitted {satisfy} all constraints."
+    progress(1.0, compose("path-verified"))
+    sentences = [
+        compose(
+            "path-slider-cranks-passed" if problem.mechanism == "slider_crank" else "path-geared-fivebars-passed",
+            passed=sifting.accepted,
+            count=sifting.candidates,
+        )
+    ]
     if sifting.passed and problem.is_fitted:
         best = in_rank(sifting.passed)[0].metrics
-        text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."
-    text += sifting.describe_reasons()
+        sentences.append(
+            compose("path-best-distance", rms_distance=f"{best.rms_distance:.3g}", unit=problem.length_unit)
+        )
+    sentences.append(sifting.describe_reasons())
     if not sifting.passed:
-        text += " None was found; some may still exist."
+        sentences.append(compose("path-none-found"))
     method = "curve_match" if problem.is_matched else "least_squares" if problem.is_fitted else "family_search"
     return PathResult(
         designs=sifting.select_designs(in_rank),
         search=sifting.build_search(method),
-        summary=text,
+        summary=join_sentences(sentences),
     )

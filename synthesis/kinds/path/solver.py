@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.curve import solver as curve_solver
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.exact.crank_angles import solve_timed
@@ -40,9 +41,8 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
         else solve_types(problem, _solve_single_type, progress)
     )
     designs = [add_cognates(design) for design in result.designs]
-    return result.model_copy(
-        update={"designs": designs, "summary": f"{result.summary}{describe_stance(designs, problem)}"}
-    )
+    summary = join_messages([result.summary, describe_stance(designs, problem)])
+    return result.model_copy(update={"designs": designs, "summary": summary})
 
 
 def _solve_family_first(problem: PathProblem, progress: Progress) -> PathResult:
@@ -50,7 +50,7 @@ def _solve_family_first(problem: PathProblem, progress: Progress) -> PathResult:
     near = solve_family(problem, scale_progress(progress, 0.0, FAMILY_PROGRESS_SHARE))
     if near.search.accepted or is_workspace_constrained(problem):
         # Linkages through additional random points would hardly fit into a workspace, whereas fits are moved into it.
-        progress(1.0, "verified")
+        progress(1.0, compose("path-verified"))
         return near
     return solve_nine_points(problem, scale_progress(progress, FAMILY_PROGRESS_SHARE, 1.0))
 

@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.sixbar.solver import describe_best_sixbar, solve_sixbars
 from synthesis.kinds.path.statement.mechanism_types import (
     SIXBAR_TYPES,
@@ -67,13 +69,15 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
         if any(_is_sufficient(problem, design) for design in select_passing(result.designs)):
             break
     assert result is not None
-    text = "" if problem.is_listed_later else describe_best_sixbar(problem, result.designs)
+    sentences = [result.summary]
+    if not problem.is_listed_later:
+        sentences.append(describe_best_sixbar(problem, result.designs))
     if problem.mechanisms == "auto" and not problem.sixbars:
-        text = f" {describe_skipped_sixbars(find_unsupported(problem))}"
+        sentences.append(describe_skipped_sixbars(find_unsupported(problem)))
     elif problem.mechanisms != "auto":
         named = select_searched_sixbars(problem.mechanisms, SIXBAR_TYPES, find_unsupported(problem))
-        text += f" {describe_unclassed(named, find_unsupported_unclassed(problem))}".rstrip()
-    return result.model_copy(update={"summary": f"{result.summary}{text}"})
+        sentences.append(describe_unclassed(named, find_unsupported_unclassed(problem)))
+    return result.model_copy(update={"summary": join_sentences(sentences)})
 
 
 def _is_sufficient(problem: PathProblem, design: PathDesign) -> bool:
@@ -100,27 +104,39 @@ def combine_results(
     """
     plain, better = select_passing(simple.designs), select_passing(found.designs)
     sound = [design for design in plain if has_good_transmission(problem, design)]
-    first, other = " or ".join(TYPE_NAMES[one] for one in before), TYPE_NAMES[name]
+    first, other = _list_types(before), compose(TYPE_NAMES[name])
     if not plain:
-        text = f"No {first} was found that satisfies all constraints; "
-        text += f"{other}s do." if better else f"nor was a {other}."
+        text = compose("path-only-other-passed" if better else "path-neither-passed", simple=first, other=other)
     elif not sound and (alone := [design for design in better if has_good_transmission(problem, design)]):
         # Only the complex type has sound designs: list these alone.
         better = alone
-        text = f"No {first} that was found is sound; sound {other}s were found"
+        text = compose("path-only-other-sound", simple=first, other=other)
     elif not sound and all(map(is_exact, plain)):
         # Exact designs have no error to halve, so that a more complex type without force transmission gains nothing.
         better = []
-        text = f"No {first} that was found is sound, and no {other} is."
+        text = compose("path-neither-sound", simple=first, other=other)
     else:
         least = find_min_error(sound or plain, problem)
         # More links must pay off by at least half the error.
         better = [design for design in better if compute_error(design, problem) <= ERROR_RATIO * least]
-        text = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
-        text += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
+        text = compose(
+            "path-other-halves-error" if better else "path-no-other-halves-error",
+            simple=first,
+            other=other,
+            error=f"{least:.3g}",
+            unit=problem.length_unit,
+        )
     order = build_ordering(problem)
     offered = merge_alternatives(problem.max_designs, (sound or plain) if better else plain, better, order)
     of_second = [design for design in offered if any(design is one for one in better)]
     if plain and better:
-        text += describe_alternatives(problem, len(offered), len(of_second))
+        text = join_messages([text, describe_alternatives(problem, len(offered), len(of_second))], "")
     return merge_results(problem.max_designs, (simple, found), offered, len(of_second), text, order)
+
+
+def _list_types(names: list[str]) -> str:
+    """Return the names of types in words, joined by "or"."""
+    text = compose(TYPE_NAMES[names[0]])
+    for name in names[1:]:
+        text = compose("path-type-or-type", first=text, last=compose(TYPE_NAMES[name]))
+    return text

@@ -36,6 +36,7 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
+from kinematics.message import compose
 from synthesis.kinds.quick_return.alternatives import (
     LIMIT_TOLERANCE,
     MAX_LINK_RATIO,
@@ -159,9 +160,9 @@ def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
     greatest = (540.0 + swing) / (180.0 - swing) if swing < 180.0 else 1.0
     reaches = bool(list_families(problem.time_ratio, math.radians(swing)))
     if swing >= 180.0:
-        reason = "a crank-rocker swings by less than 180°"
+        reason = compose("quick_return-crank-rocker-swing")
     else:
-        reason = f"from {greatest:.6g} on the limit positions of a swing of {swing:g}° lie on two circuits"
+        reason = compose("quick_return-crank-rocker-two-circuits", ratio=f"{greatest:.6g}", swing=f"{swing:g}")
     return RatioRange(
         type="fourbar", least=1.0, least_included=swing < 180.0, greatest=greatest, reaches=reaches, reason=reason
     )

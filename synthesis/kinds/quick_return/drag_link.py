@@ -24,6 +24,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from kinematics.compiling import njit
+from kinematics.message import compose
 from synthesis.kinds.quick_return.design import DragLinkMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.model.linkage.conversion import build_skeleton, build_slide, to_point
@@ -82,7 +83,7 @@ class DragLink(NamedTuple):
 
 def compute_slider_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of drag-link sixbars with a slider: all."""
-    reason = "a drag link near its change point is as uneven as one likes"
+    reason = compose("quick_return-drag-link-unlimited")
     return RatioRange(
         type="drag_link_slider", least=1.0, least_included=True, greatest=None, reaches=True, reason=reason
     )
@@ -97,9 +98,9 @@ def compute_rocker_range(problem: QuickReturnProblem) -> RatioRange:
         least_included=swings,
         greatest=None if swings else 1.0,
         reaches=swings,
-        reason="a drag link near its change point is as uneven as one likes"
+        reason=compose("quick_return-drag-link-unlimited")
         if swings
-        else "its rocker is that of a crank-rocker, which swings by less than 180°",
+        else compose("quick_return-drag-link-rocker-swing"),
     )
 
 

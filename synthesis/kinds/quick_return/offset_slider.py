@@ -23,6 +23,7 @@ import math
 
 from scipy.optimize import brentq
 
+from kinematics.message import compose
 from synthesis.kinds.quick_return.alternatives import (
     LIMIT_TOLERANCE,
     MAX_LINK_RATIO,
@@ -43,7 +44,7 @@ def compute_ratio_range(problem: QuickReturnProblem) -> RatioRange:
         least_included=True,
         greatest=3.0,
         reaches=compute_stroke_imbalance(problem.time_ratio) < 0.5 * math.pi - RANGE_END_TOLERANCE,
-        reason="from 3 on the coupler would have to pass square to the slide",
+        reason=compose("quick_return-coupler-square-to-slide"),
     )
 
 

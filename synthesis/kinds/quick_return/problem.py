@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage.problem import LinkageProblem, RankBy
 from synthesis.model.problem import (
@@ -37,6 +38,14 @@ GRASHOF_CLASSES: dict[QuickReturnType, str] = {
     "drag_link_slider": "double_crank",
 }
 """Grashof's class of the fourbar that the crank drives, for each type that has one."""
+
+CLASS_MESSAGES = {
+    frozenset(): "quick_return-mechanism-without-class",
+    frozenset({"crank_rocker"}): "quick_return-mechanism-is-crank-rocker",
+    frozenset({"double_crank"}): "quick_return-mechanism-is-double-crank",
+    frozenset({"crank_rocker", "double_crank"}): "quick_return-mechanism-is-either",
+}
+"""Messages with the reason why a class is impossible, by the classes of the requested types."""
 
 MIN_ROTATION = 1e-4
 """Minimum rotation of a body, degrees. At this rotation the rotopole is about half a million displacements away."""
@@ -229,29 +238,28 @@ class QuickReturnProblem(LinkageProblem):
             return [*self._find_position_contradictions(), *self._find_class_contradictions()]
         contradictions = []
         if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDER_TYPES):
-            contradictions.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
+            contradictions.append(Contradiction("/rotopole", compose("quick_return-slider-with-rotopole")))
         elif self.rotopole is not None and self.mechanism != "fourbar":
-            contradictions.append(
-                Contradiction("/rotopole", "only a crank-rocker can be placed at a rotopole; choose mechanism fourbar")
-            )
+            contradictions.append(Contradiction("/rotopole", compose("quick_return-rotopole-for-crank-rocker-only")))
         if self.rotopole is not None and self.crank_pivot is not None:
-            contradictions.append(Contradiction("/crank_pivot", "the rotopole places the linkage; leave this out"))
+            contradictions.append(Contradiction("/crank_pivot", compose("quick_return-crank-pivot-with-rotopole")))
         if self.mechanism == "auto" and (self.swing is None) == (self.stroke is None):
-            which = "neither" if self.swing is None else "both"
-            contradictions.append(
-                Contradiction("/swing", f"give either the swing or the stroke of the output; {which} is given")
-            )
+            message = "quick_return-no-output" if self.swing is None else "quick_return-two-outputs"
+            contradictions.append(Contradiction("/swing", compose(message)))
         if self.mechanism in ROCKER_TYPES:
-            contradictions += self._check_output("swing", "stroke", "swings")
+            contradictions += self._check_output(
+                "swing", "stroke", "quick_return-swing-missing", "quick_return-stroke-of-rocker"
+            )
         if self.mechanism in SLIDER_TYPES:
-            contradictions += self._check_output("stroke", "swing", "slides")
+            contradictions += self._check_output(
+                "stroke", "swing", "quick_return-stroke-missing", "quick_return-swing-of-slider"
+            )
         return [*contradictions, *self._find_class_contradictions()]
 
     def _find_class_contradictions(self) -> list[Contradiction]:
         """Return classes of fourbars that the types do not have."""
         classes = {GRASHOF_CLASSES[name] for name in self.types if name in GRASHOF_CLASSES}
-        listed = " or ".join(sorted(classes)).replace("_", "-") or "of no class of fourbars"
-        reason = f"its crank turns through, and the requested mechanism is {listed}"
+        reason = compose(CLASS_MESSAGES[frozenset(classes)])
         return [*self.constraints.find_class_contradictions(classes, reason), *self.find_contradicting_constraints()]
 
     def _find_position_contradictions(self) -> list[Contradiction]:
@@ -260,12 +268,12 @@ class QuickReturnProblem(LinkageProblem):
         for name in ("swing", "stroke", "crank_pivot"):
             if getattr(self, name) is not None:
                 contradictions.append(
-                    Contradiction(f"/{name}", f"the positions of the body determine this; leave the {name} out")
+                    Contradiction(f"/{name}", compose("quick_return-field-with-positions", field=name))
                 )
         if self.mechanism not in ("fourbar", "auto"):
-            contradictions.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
+            contradictions.append(Contradiction("/mechanism", compose("quick_return-body-needs-fourbar")))
         if abs(self.rotation) < MIN_ROTATION:
-            detail = "the body must turn between its positions; a translation has no rotopole"
+            detail = compose("quick_return-body-does-not-turn")
             return [*contradictions, Contradiction("/positions/1/angle", detail)]
         pole = self.pole
         assert pole is not None
@@ -273,18 +281,15 @@ class QuickReturnProblem(LinkageProblem):
         if self.rotopole is not None:
             reach = max(abs(position.point - pole) for position in self.positions)
             if abs(complex(*self.rotopole) - pole) > POLE_TOLERANCE * max(reach, abs(pole)):
-                detail = f"the positions have theirs at ({pole.real:.9g}, {pole.imag:.9g}); leave it out or correct it"
+                detail = compose("quick_return-rotopole-differs", x=f"{pole.real:.9g}", y=f"{pole.imag:.9g}")
                 contradictions.append(Contradiction("/rotopole", detail))
         return contradictions
 
-    def _check_output(self, wanted: str, other: str, does: str) -> list[Contradiction]:
+    def _check_output(self, wanted: str, other: str, missing: str, superfluous: str) -> list[Contradiction]:
+        """Return the messages ``missing`` and ``superfluous`` at the field that is wanted and at the other."""
         contradictions = []
         if getattr(self, wanted) is None:
-            contradictions.append(
-                Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}; give its {wanted}")
-            )
+            contradictions.append(Contradiction(f"/{wanted}", compose(missing, mechanism=self.mechanism)))
         if getattr(self, other) is not None:
-            contradictions.append(
-                Contradiction(f"/{other}", f"the output of a {self.mechanism} {does}; leave the {other} out")
-            )
+            contradictions.append(Contradiction(f"/{other}", compose(superfluous, mechanism=self.mechanism)))
         return contradictions

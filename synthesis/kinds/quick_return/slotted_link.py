@@ -22,6 +22,7 @@ import cmath
 import math
 
 from kinematics.linkage.planar.catalogue import make_quick_return
+from kinematics.message import compose
 from synthesis.kinds.quick_return.alternatives import LIMIT_TOLERANCE
 from synthesis.kinds.quick_return.design import QuickReturnLinks, QuickReturnMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, compute_stroke_imbalance
@@ -44,12 +45,12 @@ WHITWORTH_COUPLER_RATIO = 4.0
 
 def compute_crank_shaper_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of crank-shapers."""
-    return _make_range_above_one(problem, "crank_shaper", "equal strokes would need a crank without length")
+    return _make_range_above_one(problem, "crank_shaper", compose("quick_return-equal-strokes-without-crank"))
 
 
 def compute_whitworth_range(problem: QuickReturnProblem) -> RatioRange:
     """Return the time ratios of Whitworth mechanisms."""
-    return _make_range_above_one(problem, "whitworth", "equal strokes would need both fixed pivots in one place")
+    return _make_range_above_one(problem, "whitworth", compose("quick_return-equal-strokes-at-one-pivot"))
 
 
 def build_crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
+from kinematics.message import compose, join_messages
 from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider, slotted_link
 from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMechanisms, QuickReturnResult, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
-from synthesis.model.counting import choose_word, format_count
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import LENGTH_REASONS, CandidateLog
 from synthesis.results.placement import place_mechanism
@@ -45,6 +45,17 @@ TYPE_FUNCTIONS: dict[str, _TypeFunctions] = {
 }
 """Every type by its name."""
 
+TYPE_NAMES = {
+    "fourbar": "quick_return-fourbar",
+    "drag_link_rocker": "quick_return-drag-link-rocker",
+    "offset_slider_crank": "quick_return-offset-slider-crank",
+    "slider_crank": "quick_return-slider-crank",
+    "crank_shaper": "quick_return-crank-shaper",
+    "whitworth": "quick_return-whitworth",
+    "drag_link_slider": "quick_return-drag-link-slider",
+}
+"""Messages with the names of the types. A mechanism of the type offset_slider_crank has the type slider_crank."""
+
 
 def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> QuickReturnResult:
     """Solve a problem of quick return."""
@@ -53,7 +64,7 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
     sifting = CandidateLog[QuickReturnDesign](problem, LENGTH_REASONS)
     names = problem.types
     for n, name in enumerate(names):
-        progress(n / len(names), f"designing: {name.replace('_', ' ')}")
+        progress(n / len(names), compose("quick_return-designing", type=compose(TYPE_NAMES[name])))
         of_type = TYPE_FUNCTIONS[name]
         reach = of_type.reachable(problem)
         ranges.append(reach)
@@ -65,7 +76,7 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
         sifting.verify_candidates(
             (_place_mechanism(problem, one) for one in candidates), partial(verify_quick_return, problem)
         )
-    progress(1.0, "verified")
+    progress(1.0, compose("quick_return-verified"))
     complete = all(not reach.reaches or TYPE_FUNCTIONS[reach.type].proven for reach in ranges) and _is_proven(
         sifting.rejected
     )
@@ -122,43 +133,51 @@ def _describe_result(
     lines = []
     for reach in ranges:
         if not reach.reaches:
-            lines.append(
-                f"The {_format_type(reach.type)} cannot reach a time ratio of {problem.time_ratio:g}: "
-                f"{_describe_range(reach)}."
-            )
-    within = "" if problem.link_ratio_limit is None else f" with a link ratio of at most {problem.link_ratio_limit:g}"
-    lines += [
-        f"No {_format_type(name)}{within} exists."
-        if TYPE_FUNCTIONS[name].proven
-        else f"No {_format_type(name)}{within} was found."
-        for name in short
-    ]
+            lines.append(_describe_range(problem.time_ratio, reach))
+    lines += [_describe_failure(name, problem.link_ratio_limit) for name in short]
     if sifting.passed:
         best = select_best(sifting.passed, SORT_KEYS["transmission_angle"])
         count = len(sifting.passed)
         lines.insert(
             0,
-            f"{format_count(count, 'design')} {choose_word(count, 'has', 'have')} a measured time ratio of "
-            f"{problem.time_ratio:g}. The best minimum transmission angle is "
-            f"{best.metrics.min_transmission_angle:.3f}°, of a {_format_type(best.mechanism.type)}.",
+            compose(
+                "quick_return-designs-found",
+                count=count,
+                ratio=f"{problem.time_ratio:g}",
+                angle=f"{best.metrics.min_transmission_angle:.3f}",
+                type=compose(TYPE_NAMES[best.mechanism.type]),
+            ),
         )
     else:
-        lines.insert(0, "No design exists." if complete else "No design was found.")
-        if sifting.rejected:
-            lines.append(f"Rejected: {sifting.format_reasons()}.")
-    return " ".join(lines)
+        lines.insert(0, compose("quick_return-no-design-exists" if complete else "quick_return-no-design-found"))
+        lines.append(sifting.describe_reasons().lstrip())
+    return join_messages(lines)
 
 
-def _format_type(name: str) -> str:
-    """Return the name of a type in words."""
-    return name.replace("_", " ")
+def _describe_failure(name: str, link_ratio: float | None) -> str:
+    """Describe in a sentence that a type has no member, or none with a link ratio of at most ``link_ratio``."""
+    proven, name = TYPE_FUNCTIONS[name].proven, compose(TYPE_NAMES[name])
+    if link_ratio is None:
+        return compose("quick_return-type-does-not-exist" if proven else "quick_return-type-not-found", type=name)
+    return compose(
+        "quick_return-link-ratio-impossible" if proven else "quick_return-link-ratio-not-found",
+        type=name,
+        link_ratio=f"{link_ratio:g}",
+    )
 
 
-def _describe_range(reach: RatioRange) -> str:
-    """Describe the range of time ratios of a type and its reason."""
-    to = "" if reach.greatest is None else f" to below {reach.greatest:.6g}"
-    from_ = f"from {reach.least:g}" if reach.least_included else f"above {reach.least:g}"
-    spread = f"{from_}{to}"
+def _describe_range(time_ratio: float, reach: RatioRange) -> str:
+    """Describe in a sentence why a type cannot reach a time ratio: its range and the reason."""
+    name, ratio = compose(TYPE_NAMES[reach.type]), f"{time_ratio:g}"
     if reach.greatest is not None and reach.greatest <= reach.least:
-        spread = "none"
-    return f"its range with this output is {spread} ({reach.reason})"
+        return compose("quick_return-type-without-range", type=name, ratio=ratio, reason=reach.reason)
+    least = f"{reach.least:g}"
+    if reach.greatest is None:
+        spread = compose("quick_return-from" if reach.least_included else "quick_return-above", least=least)
+    else:
+        spread = compose(
+            "quick_return-from-to-below" if reach.least_included else "quick_return-above-to-below",
+            least=least,
+            greatest=f"{reach.greatest:.6g}",
+        )
+    return compose("quick_return-ratio-out-of-range", type=name, ratio=ratio, range=spread, reason=reach.reason)

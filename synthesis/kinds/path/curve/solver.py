@@ -25,6 +25,7 @@ from functools import partial
 import numpy as np
 
 from kinematics.arrays import Real
+from kinematics.message import compose
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR
 from synthesis.fit.constraints import COSINE, LINKS
 from synthesis.kinds.path.curve.fits import (
@@ -67,6 +68,7 @@ from synthesis.kinds.path.residuals.curve_constraints import (
 )
 from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend
 from synthesis.kinds.path.residuals.families import compute_joints, list_families
+from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.results import select_distinct_designs as designs_that_differ
 from synthesis.kinds.path.task.ranking import (
     ERROR_TOLERANCE,
@@ -79,7 +81,6 @@ from synthesis.kinds.path.task.ranking import (
 )
 from synthesis.kinds.path.task.target_curve import SHAPE_POINT_COUNT, TargetCurve
 from synthesis.kinds.path.verification.fourbar import verify_path
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.model.linkage.problem import LengthLimits
@@ -139,12 +140,12 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     linkages, sweep = _find_linkages(problem, target, setting, progress)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates(linkages, progress, (0.8, 1.0), "path-progress-linkages-verified"),
+        report_candidates(linkages, progress, (0.8, 1.0), "path-linkages-verified"),
         partial(_verify_linkage, problem, target, setting),
     )
     # Sound but inaccurate designs are counted as rejected instead of silently dropped.
     sifting.withdraw(select_near(sifting.passed, problem), FAR_REASON)
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     return PathResult(
         designs=sifting.select_designs(
             partial(rank_by_nearness, problem=problem),
@@ -215,7 +216,7 @@ def _match_shapes(
         def report_share(share: float, n: int = n, count: int = count) -> None:
             # Comparing takes about 70 % of a family's time, refinement the rest.
             fraction = (n + 0.7 * share) / len(families)
-            progress(0.6 * fraction, f"{round(count * share)} of {count} linkages compared")
+            progress(0.6 * fraction, compose("path-linkages-compared", done=round(count * share), count=count))
 
         seed = problem.seed % 2**32
         library.append(compare_shapes(family, target.steps, problem.closed, count, seed=seed, progress=report_share))
@@ -223,7 +224,7 @@ def _match_shapes(
         drawn, swept, followed = drawn + count, swept + starts.swept, followed + len(starts.x)
         fits, least = _refine_free(target, starts, longest, least)
         free += fits
-        progress(0.6 * (n + 1.0) / len(families), "best shapes refined")
+        progress(0.6 * (n + 1.0) / len(families), compose("path-best-shapes-refined"))
     free.sort(key=lambda fit: fit.error)
 
     def select_suitable(demands: Real) -> list[Starts]:
@@ -246,14 +247,14 @@ def _match_shapes(
         # Without a required transmission angle accuracy alone would lead to change points, so usable linkages compete
         # as well.
         for k, degrees in enumerate(USABLE_ANGLES):
-            progress(0.65 + 0.1 * k / len(USABLE_ANGLES), f"fitting with a transmission angle of {degrees:g}°")
+            progress(0.65 + 0.1 * k / len(USABLE_ANGLES), compose("path-fitting-with-angle", angle=f"{degrees:g}"))
             demands = tighten_to_usable(setting, degrees, MAX_LINK_RATIO)
             traded += find_constrained_fits(
                 target, constrained, partial(select_suitable, demands), families, demands, MAX_USABLE
             )
     sweep = CurveSweep(linkages=drawn, curves=swept, refined=followed)
     if problem.stance is not None:
-        progress(0.75, "fitting the stance")
+        progress(0.75, compose("path-fitting-stance"))
         kept = find_stance_fits(problem, target, [*constrained, *traded, *free], families, setting)
         if kept:
             return kept, sweep
@@ -398,27 +399,27 @@ def _verify_linkage(
 
 
 def _describe_result(problem: PathProblem, sifting: CandidateLog[PathDesign], sweep: CurveSweep | None) -> str:
-    satisfy = f"{choose_word(sifting.accepted, 'satisfies', 'satisfy')} all constraints"
-    counts = f"{format_integer(sifting.accepted)} of {format_integer(sifting.candidates)}"
     if sweep is None:
-        text = (
-            f"Linkages on the given pivots were fitted to points along the curve from many starts. {counts} {satisfy}."
-        )
+        sentences = [
+            compose("path-curve-fitted-on-pivots"),
+            compose("path-some-passed", passed=sifting.accepted, count=sifting.candidates),
+        ]
     else:
-        text = (
-            f"{format_integer(sweep.curves)} curves of {format_count(sweep.linkages, 'linkage')} were compared with "
-            f"the target and {format_integer(sweep.refined)} of them refined. {counts} designs, cognates included, "
-            f"{satisfy}."
-        )
+        sentences = [
+            compose("path-curves-compared", curves=sweep.curves, linkages=sweep.linkages, refined=sweep.refined),
+            compose("path-designs-and-cognates-passed", passed=sifting.accepted, count=sifting.candidates),
+        ]
     if sifting.passed:
         ordered = rank_by_nearness(sifting.passed, problem)
         best = ordered[0].metrics
-        unit = problem.length_unit
-        text += f" The best draws the curve with an rms distance of {best.rms_distance:.3g} {unit} "
-        text += f"and a maximum distance of {best.max_distance:.3g}.{explain_choice(ordered, problem)}"
-        if sweep is not None:
-            text += (
-                " Cognates draw the same curve; the one with pivots near the curve, good force transmission and even "
-                "links comes first."
-            )
-    return text + sifting.describe_reasons()
+        sentences += [
+            compose(
+                "path-best-curve",
+                rms_distance=f"{best.rms_distance:.3g}",
+                max_distance=f"{best.max_distance:.3g}",
+                unit=problem.length_unit,
+            ),
+            explain_choice(ordered, problem),
+            "" if sweep is None else compose("path-cognates-ranked"),
+        ]
+    return join_sentences([*sentences, sifting.describe_reasons()])

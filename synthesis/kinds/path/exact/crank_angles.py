@@ -23,14 +23,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.motion.dyads.equations import DyadConditions, refine_dyads
 from synthesis.kinds.motion.dyads.finite_sets import find_section
 from synthesis.kinds.motion.task.positions import MotionTask
 from synthesis.kinds.path.design import PathResult, TimedDyads
 from synthesis.kinds.path.exact.underdetermined_fit import find_exact_fits
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.results import MIN_LINK_SHARE, MIN_SEPARATION, PathCandidateLog
-from synthesis.model.counting import choose_word, format_count
+from synthesis.kinds.path.results import MIN_LINK_SHARE, MIN_SEPARATION, PathCandidateLog, join_sentences
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import FourbarConfiguration
 
@@ -100,7 +100,7 @@ def solve_timed(problem: PathProblem, progress: Progress) -> PathResult:
     harvest = PathCandidateLog(problem, apart=MIN_SEPARATION)
     for design in find_exact_fits(problem, progress):
         harvest.record_candidate(design)
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     return harvest.build_result("timed_family", complete=False, summary=_describe_family(problem, harvest))
 
 
@@ -115,32 +115,28 @@ def _solve_five_points(problem: PathProblem, progress: Progress) -> PathResult:
     inputs = fourbars = sliders = 0
     proved = True
     for n, way in enumerate(ways):
-        progress(n / len(ways), "computing all dyads")
+        progress(n / len(ways), compose("path-computing-dyads"))
         solved = compute_timed_fourbars(points, way)
         inputs, sliders, proved = inputs + solved.inputs, sliders + solved.sliders, proved and solved.proved
         fourbars += len(solved.joints)
         for o2, a, b, o4 in given[0] + size * solved.joints:
             harvest.drive(FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0]))))
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     complete, passed = proved and not harvest.unproven, len(harvest.passed)
-    text = (
-        f"{format_count(inputs, 'input dyad')} and {format_count(fourbars, 'fourbar')} pass the five points at their "
-        f"crank angles; {passed} of them {choose_word(passed, 'satisfies', 'satisfy')} all constraints."
+    summary = join_sentences(
+        [
+            compose("path-five-points-with-timing", inputs=inputs, fourbars=fourbars, passed=passed),
+            harvest.describe_reasons(),
+            compose("path-dyads-with-slider", count=sliders) if sliders else "",
+            harvest.describe_completeness(complete=complete),
+        ]
     )
-    text += harvest.describe_reasons()
-    if sliders:
-        text += f" {format_count(sliders, 'more dyad has', 'more dyads have')} a pivot at infinity (a slider)."
-    text += harvest.describe_completeness(complete=complete)
-    result = harvest.build_result("timed_dyads", complete=complete, summary=text)
+    result = harvest.build_result("timed_dyads", complete=complete, summary=summary)
     return result.model_copy(update={"timed": TimedDyads(inputs=inputs, fourbars=fourbars, sliders=sliders)})
 
 
 def _describe_family(problem: PathProblem, harvest: PathCandidateLog) -> str:
     """Describe the designs found for points that leave freedom."""
     passed = len(harvest.passed)
-    text = (
-        f"{passed} of {format_count(harvest.candidates, 'linkage')} through the {len(problem.points)} points at their "
-        f"crank angles {choose_word(passed, 'satisfies', 'satisfy')} all constraints. The points leave freedom; the "
-        "linkages are random samples of it."
-    )
-    return text + harvest.describe_reasons() + harvest.describe_completeness(complete=False)
+    text = compose("path-family-with-timing", passed=passed, count=harvest.candidates, points=len(problem.points))
+    return join_sentences([text, harvest.describe_reasons(), harvest.describe_completeness(complete=False)])

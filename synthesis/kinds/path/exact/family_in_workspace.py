@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.path.points.fit import build_configuration, build_point_task, find_minima
 from synthesis.kinds.path.points.workspace_starts import WorkspaceStarts, draw_workspace_starts
 from synthesis.kinds.path.problem import PathProblem
@@ -78,7 +79,7 @@ def find_workspace_members(problem: PathProblem, progress: Progress) -> Workspac
             if len(found) >= SUFFICIENT_MEMBERS:
                 break
             done = (turn + n / len(families)) / problem.rounds
-            message = f"round {turn + 1} of {problem.rounds}: {len(found)} linkages meet all points"
+            message = compose("path-round-found", round=turn + 1, rounds=problem.rounds, count=len(found))
             progress(DRAW_PROGRESS_SHARE * done, message)
             rng = np.random.default_rng([problem.seed, turn, n])
             setting = pack_setting(problem, centre, size, sign=1.0, family=family)

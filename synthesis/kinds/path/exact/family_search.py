@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.path.curve.shape_matching import compare_shapes, select_most_similar
 from synthesis.kinds.path.design import FamilySearch, PathDesign, PathResult
 from synthesis.kinds.path.exact.family_in_workspace import COST_TOLERANCE, find_workspace_members
@@ -35,9 +36,9 @@ from synthesis.kinds.path.residuals.curve_constraints import (
 )
 from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend
 from synthesis.kinds.path.residuals.families import compute_joints, list_families
+from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.task.target_curve import interpolate_crank_angles, sample_smooth_steps
 from synthesis.kinds.path.verification.fourbar import verify_path
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.numerics.portions import run_in_portions
@@ -110,7 +111,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     for turn in range(problem.rounds):
         for n, family in enumerate(families):
             done = (turn + n / len(families)) / problem.rounds
-            progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(members)} linkages meet all points")
+            progress(0.6 * done, compose("path-round-found", round=turn + 1, rounds=problem.rounds, count=len(members)))
             seed = int(np.random.default_rng([problem.seed, turn, n]).integers(2**31))
             compared = compare_shapes(family, smooth, False, DRAW_COUNT, seed=seed)
             starts = select_most_similar(compared, MAX_FOLLOWED, longest)
@@ -179,23 +180,22 @@ def _build_result(problem: PathProblem, members: list[Member], brought: int, pro
     # Force limits are violated by many fits, as far as their residuals show; drive these only if there are no others.
     sound = [one for one in driven if one.broken == 0.0] if problem.constraints.force_limits else driven
     sifting.verify_candidates(
-        report_candidates(sound, progress, (0.6, 1.0), "path-progress-linkages-driven"), verify_member, enough
+        report_candidates(sound, progress, (0.6, 1.0), "path-linkages-driven"), verify_member, enough
     )
     if len(sound) < len(driven) and len(sifting.passed) < problem.max_designs:
         sifting.verify_candidates((one for one in driven if one.broken > 0.0), verify_member, problem.max_designs)
-    progress(1.0, "verified")
-    text = (
-        f"{format_count(brought, 'start')} near a curve through the points {choose_word(brought, 'was', 'were')} "
-        f"fitted; {format_integer(len(ordered))} reached all points exactly, with the required pivots. "
-        f"{format_integer(sifting.accepted)} of {format_integer(len(driven))} distinct linkages "
-        f"{choose_word(sifting.accepted, 'satisfies', 'satisfy')} all constraints."
+    progress(1.0, compose("path-verified"))
+    summary = join_sentences(
+        [
+            compose("path-family-fitted", starts=brought, reached=len(ordered)),
+            compose("path-distinct-linkages-passed", passed=sifting.accepted, count=len(driven)),
+            sifting.describe_reasons(),
+            "" if sifting.accepted else compose("path-none-found"),
+        ]
     )
-    text += sifting.describe_reasons()
-    if not sifting.accepted:
-        text += " None was found; some may still exist."
     return PathResult(
         designs=sifting.select_designs(partial(rank_designs, rank_by=problem.rank_by)),
         search=sifting.build_search("family_search"),
-        summary=text,
+        summary=summary,
         family=FamilySearch(followed=brought, met=len(ordered)),
     )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinematics.message import compose
 from synthesis.kinds.path.design import GivenPivotSolutions, PathResult
 from synthesis.kinds.path.exact.five_point_system import SOLUTION_COUNT
 from synthesis.kinds.path.exact.five_points import solve_five_points
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.results import PathCandidateLog
-from synthesis.model.counting import choose_word, format_count
+from synthesis.kinds.path.results import PathCandidateLog, join_sentences
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import to_complex
 from synthesis.results.candidate_log import report_candidates
@@ -31,23 +31,25 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
         float(value) for pivot in (given.input, given.output) for value in pivot or () if value is not None
     )
     points = np.array([point.point for point in problem.points])
-    progress(0.0, f"{SOLUTION_COUNT} paths")
+    progress(0.0, compose("path-following-paths", count=SOLUTION_COUNT))
     solved = solve_five_points(points, to_complex((x2, y2)), to_complex((x4, y4)), np.random.default_rng(problem.seed))
     harvest = PathCandidateLog(problem)
     on_one_circuit = 0
-    for joints in report_candidates(solved.linkages, progress, (0.5, 1.0), "path-progress-real-linkages-verified"):
+    for joints in report_candidates(solved.linkages, progress, (0.5, 1.0), "path-real-linkages-verified"):
         on_one_circuit += harvest.drive(joints)
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     # A solution that rounding kept from being driven might have been a design.
     complete = solved.complete and not harvest.unproven
-    text = (
-        f"{solved.found} of {SOLUTION_COUNT} solutions on these pivots were computed; "
-        f"{format_count(len(solved.linkages), 'is real', 'are real')}, {on_one_circuit} of these "
-        f"{choose_word(on_one_circuit, 'has', 'have')} all points on one circuit, and "
-        f"{format_count(len(harvest.passed), 'satisfies', 'satisfy')} all constraints."
+    text = compose(
+        "path-solutions-on-pivots",
+        computed=solved.found,
+        count=SOLUTION_COUNT,
+        real=len(solved.linkages),
+        on_one_circuit=on_one_circuit,
+        passed=len(harvest.passed),
     )
-    text += harvest.describe_reasons() + harvest.describe_completeness(complete=complete)
-    result = harvest.build_result("five_point_continuation", complete=complete, summary=text)
+    summary = join_sentences([text, harvest.describe_reasons(), harvest.describe_completeness(complete=complete)])
+    result = harvest.build_result("five_point_continuation", complete=complete, summary=summary)
     counts = GivenPivotSolutions(
         computed=solved.found,
         real=len(solved.linkages),

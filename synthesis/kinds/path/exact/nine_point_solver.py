@@ -10,6 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from synthesis.kinds.path.design import CognateTriples, PathResult
 from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start
 from synthesis.kinds.path.exact.nine_point_system import (
@@ -20,8 +21,7 @@ from synthesis.kinds.path.exact.nine_point_system import (
 )
 from synthesis.kinds.path.exact.nine_points import TripleSolutions, compute_triples
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.results import PathCandidateLog
-from synthesis.model.counting import choose_word, format_count, format_integer
+from synthesis.kinds.path.results import PathCandidateLog, join_sentences
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.conversion import FourbarConfiguration
 from synthesis.numerics.continuation import ParameterPath, follow, refine
@@ -47,14 +47,15 @@ def solve_nine_points(problem: PathProblem, progress: Progress) -> PathResult:
     for n in range(rounds):
 
         def report_paths(share: float, n: int = n) -> None:
-            tracked = f"{round(share * ORBIT_COUNT)} of {ORBIT_COUNT} paths followed"
-            message = tracked if rounds == 1 else f"round {n + 1} of {rounds}: {tracked}"
+            message = compose("path-paths-followed", done=round(share * ORBIT_COUNT), count=ORBIT_COUNT)
+            if rounds > 1:
+                message = compose("path-round", round=n + 1, rounds=rounds, progress=message)
             progress(0.95 * (n + share) / rounds, message)
 
         triples = compute_triples(_complete_to_nine(given, rng), rng, report_paths, THREAD_COUNT)
         computed.append(triples)
         on_one_circuit += _verify_triples(harvest, triples)
-    progress(1.0, "verified")
+    progress(1.0, compose("path-verified"))
     complete = len(given) == POINT_COUNT and computed[0].complete and not harvest.unproven
     counts = CognateTriples(
         rounds=rounds,
@@ -65,15 +66,17 @@ def solve_nine_points(problem: PathProblem, progress: Progress) -> PathResult:
         closed_under_conjugation=all(triples.self_conjugate for triples in computed),
     )
     method = "nine_point_continuation" if len(given) == POINT_COUNT else "nine_point_family"
-    text = (
-        f"{counts.computed} of {ORBIT_COUNT * rounds} triples of cognate fourbars were computed; "
-        f"{format_count(counts.real, 'is real', 'are real')}, {on_one_circuit} of these "
-        f"{choose_word(on_one_circuit, 'has', 'have')} all points on one circuit, and "
-        f"{format_integer(harvest.accepted)} of "
-        f"{format_count(harvest.candidates, 'design')} {choose_word(harvest.accepted, 'satisfies', 'satisfy')} all "
-        f"constraints.{harvest.describe_reasons()}{harvest.describe_completeness(complete=complete)}"
+    text = compose(
+        "path-triples-computed",
+        computed=counts.computed,
+        count=ORBIT_COUNT * rounds,
+        real=counts.real,
+        on_one_circuit=on_one_circuit,
+        passed=harvest.accepted,
+        designs=harvest.candidates,
     )
-    result = harvest.build_result(method, complete=complete, summary=text)
+    summary = join_sentences([text, harvest.describe_reasons(), harvest.describe_completeness(complete=complete)])
+    result = harvest.build_result(method, complete=complete, summary=summary)
     return result.model_copy(update={"triples": counts})
 
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Integers, Real
+from kinematics.message import compose
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, POINT, UNKNOWNS, write_unknowns
 from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
 from synthesis.kinds.path.points.starts import (
@@ -238,12 +239,18 @@ def find_minima(
     pool.sort(key=lambda candidate: candidate.cost)
     most = finalists if len(task.rows) <= MAX_FAST_POINTS else MAX_DENSE_FINALISTS
     minima = _solve_all_constrained(
-        _select_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits")
+        _select_distinct(pool, most),
+        task,
+        thinned,
+        lambda share: progress(0.6 + 0.2 * share, compose("path-refining-fits")),
     )
     for _ in range(RETURN_ROUNDS if thinned is task else 0):
         again = _perturb_minima(problem, minima, thinned, cases, settings, rng, progress)
         minima += _solve_all_constrained(
-            _select_distinct(again, MAX_RETURN_REFINED), task, thinned, lambda share: progress(0.9, "refining fits")
+            _select_distinct(again, MAX_RETURN_REFINED),
+            task,
+            thinned,
+            lambda share: progress(0.9, compose("path-refining-fits")),
         )
     return sorted(minima, key=lambda candidate: candidate.cost)
 
@@ -267,11 +274,11 @@ def _search_populations(
             )
     populations = []
     for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
-        progress(0.4 * n / len(cases), f"class {n + 1} of {len(cases)}: fitting from random starts")
+        progress(0.4 * n / len(cases), compose("path-fitting-class", number=n + 1, count=len(cases)))
         own = drawn.get(int(setting[FAMILY_INDEX]))
         populations.append(_descend_population(problem, _orient_rows(thinned.rows, way), setting, len(cases), rng, own))
     for kick in range(KICK_ROUNDS):
-        progress(0.4 + 0.2 * kick / KICK_ROUNDS, "perturbing the best fits")
+        progress(0.4 + 0.2 * kick / KICK_ROUNDS, compose("path-perturbing-fits"))
         bases = [_drop_duplicates(_select_best(population, 4 * MAX_KICKED), MAX_KICKED) for population in populations]
         for n, (way, _, sign) in enumerate(cases):
             # Cases alternate in the assembly, so that the neighbour is the same case with the other assembly.
@@ -298,7 +305,7 @@ def _perturb_minima(
     """
     again: list[Candidate] = []
     for n, (way, family, sign) in enumerate(cases):
-        progress(0.8 + 0.1 * n / len(cases), "perturbing the best fits")
+        progress(0.8 + 0.1 * n / len(cases), compose("path-perturbing-fits"))
         # The minima of this case, and those of the other assembly, which may be flipped into it.
         held = _select_population(minima, (way, family, sign)), _select_population(minima, (way, family, -sign))
         population = _perturb_population(problem, held, _orient_rows(thinned.rows, way), settings[n], rng)

@@ -23,11 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.path.curve.fits import get_thinning
 from synthesis.kinds.path.curve.stance_fit import pack_target_stance
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.sixbar.fit import CrankSteps, SixbarFits, descend_softly, fit_constrained, pack_sixbar_setting
 from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
 from synthesis.kinds.path.sixbar.shape_matching import FAMILIES, FORMS, find_similar_sixbars
@@ -48,11 +50,9 @@ from synthesis.kinds.path.task.target_curve import (
     sample_smooth_steps,
 )
 from synthesis.kinds.path.verification.linkage import verify_traced
-from synthesis.model.counting import choose_word, format_count, format_integer
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import SixbarMechanism
 from synthesis.model.linkage.conversion import to_complex
-from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from synthesis.results.candidate_log import CandidateLog, report_candidates
 from synthesis.results.ranking import select_distinct
 from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE, select_passing
@@ -171,7 +171,7 @@ def _find_candidates(
     longest, weights = problem.longest_link / size, np.ones(SHAPE_POINT_COUNT)
     found: list[_Candidate] = []
     for n, (kind, form) in enumerate(tasks):
-        progress(n / len(tasks), f"{kind}: {drawn} sixbars compared, {followed} fitted")
+        progress(n / len(tasks), compose("path-sixbars-fitted", type=kind, compared=drawn, fitted=followed))
         alike = find_similar_sixbars(form, steps, problem.closed, drawn, followed, rng, longest)
         if not len(alike.x):
             continue
@@ -271,22 +271,23 @@ def _build_result(problem: PathProblem, mechanisms: list[SixbarMechanism], progr
     )
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "path-progress-sixbars-driven"),
+        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "path-sixbars-driven"),
         partial(verify_traced, problem),
     )
     if problem.is_fitted:
         sifting.withdraw(select_near(drop_straying(sifting.passed, problem), problem), FAR_REASON)
-    progress(1.0, "verified")
-    fitted = format_count(sifting.candidates, "sixbar that was", "sixbars that were")
-    satisfy = choose_word(sifting.accepted, "satisfies", "satisfy")
-    text = f"{format_integer(sifting.accepted)} of {fitted} fitted {satisfy} all constraints."
-    text += sifting.describe_reasons()
-    if not sifting.passed:
-        text += " None was found; some may still exist."
+    progress(1.0, compose("path-verified"))
+    summary = join_sentences(
+        [
+            compose("path-sixbars-passed", passed=sifting.accepted, count=sifting.candidates),
+            sifting.describe_reasons(),
+            "" if sifting.passed else compose("path-none-found"),
+        ]
+    )
     return PathResult(
         designs=sifting.select_designs(build_ordering(problem)),
         search=sifting.build_search("sixbar_shapes"),
-        summary=text,
+        summary=summary,
     )
 
 
@@ -296,11 +297,17 @@ def describe_best_sixbar(problem: PathProblem, designs: Sequence[PathDesign]) ->
     if not sixbars:
         return ""
     best = sixbars[0]
-    text = f" The best sixbar is a {SIXBAR_NAMES[best.mechanism.type]} with P on {best.point_link}"
+    name, link = compose("path-sixbar-name", type=best.mechanism.type), best.point_link or ""
     if is_exact(best):
-        text += ", which meets the points"
-    else:
-        text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
-    if best.metrics.both_way_rms is not None:
-        text += f", {best.metrics.both_way_rms:.3g} both ways"
-    return f"{text}."
+        return compose("path-best-sixbar-exact", type=name, link=link)
+    rms_distance, unit = f"{best.metrics.rms_distance:.3g}", problem.length_unit
+    if best.metrics.both_way_rms is None:
+        return compose("path-best-sixbar", type=name, link=link, rms_distance=rms_distance, unit=unit)
+    return compose(
+        "path-best-sixbar-both-ways",
+        type=name,
+        link=link,
+        rms_distance=rms_distance,
+        unit=unit,
+        both_way_rms=f"{best.metrics.both_way_rms:.3g}",
+    )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from kinematics.message import compose
 from synthesis.model.linkage.type_choice import (
     UNCLASSED_SIXBAR,
     Auto,
@@ -34,12 +35,12 @@ Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_len
 """Types by their names, or ``auto`` for the simplest suitable one."""
 
 TYPE_NAMES = {
-    "fourbar": "fourbar",
-    "slider_crank": "slider-crank",
-    "geared_fivebar": "geared fivebar",
-    "sixbar": "sixbar",
+    "fourbar": "path-fourbar",
+    "slider_crank": "path-slider-crank",
+    "geared_fivebar": "path-geared-fivebar",
+    "sixbar": "path-sixbar",
 }
-"""Names of the types in messages; sixbars share one."""
+"""Messages with the names of the types; sixbars share one."""
 
 TURNING_CLASSES = ("any", "crank_rocker", "double_crank")
 """Classes of fourbars within sixbars: their crank turns through."""
@@ -56,9 +57,9 @@ def find_mechanism_contradictions(problem: PathProblem) -> list[Contradiction]:
     if stated is None:
         return []
     if problem.mechanism != "fourbar":
-        listed.append(Contradiction("/mechanism", "mechanisms already names all types; leave this out"))
+        listed.append(Contradiction("/mechanism", compose("path-types-named-twice")))
     if problem.gear_ratio is not None and "geared_fivebar" not in list_simple_types(stated):
-        listed.append(Contradiction("/gear_ratio", "none of the requested mechanisms has gears"))
+        listed.append(Contradiction("/gear_ratio", compose("path-types-without-gears")))
     listed += find_sixbar_contradictions(stated, SIXBAR_TYPES, find_unsupported(problem))
     return listed + (
         list(find_unsupported_unclassed(problem))
@@ -76,8 +77,8 @@ def find_unsupported(problem: PathProblem) -> Iterator[Contradiction]:
         ("/constraints/coupler_point", limits.coupler_point is not None),
     ):
         if of_fourbars:
-            yield Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
-    yield from limits.find_class_contradictions(TURNING_CLASSES, "only sixbars whose crank turns through are searched")
+            yield Contradiction(path, compose("path-not-for-sixbars"))
+    yield from limits.find_class_contradictions(TURNING_CLASSES, compose("path-turning-sixbars-only"))
     yield from find_unsupported_by_sixbars(problem)
 
 
@@ -85,4 +86,4 @@ def find_unsupported_unclassed(problem: PathProblem) -> Iterator[Contradiction]:
     """Yield requests that a Stephenson II sixbar cannot satisfy, or that its search does not support."""
     yield from refuse_class(problem.constraints)
     if problem.stance is not None:
-        yield Contradiction("/stance", "is not supported for Stephenson II sixbars; name others, or leave it out")
+        yield Contradiction("/stance", compose("path-stance-not-for-stephenson"))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from kinematics.message import compose
 from synthesis.model.problem import Contradiction, Count, PositiveLength, PositiveNumber, Statement
 
 if TYPE_CHECKING:
@@ -66,26 +67,26 @@ def find_stance_errors(problem: PathProblem) -> Iterator[Contradiction]:
     count = len(problem.points)
     for end, index in enumerate(stance.points):
         if index >= count:
-            yield Contradiction(f"/stance/points/{end}", f"there are {count} points, counted from 0")
+            yield Contradiction(f"/stance/points/{end}", compose("path-stance-point-unknown", count=count))
     if first == last:
-        yield Contradiction("/stance/points", "a stance needs two different points")
+        yield Contradiction("/stance/points", compose("path-stance-of-one-point"))
     # Only a closed path has a first point behind the last.
     elif stance.wraps_around and not problem.closed:
-        yield Contradiction("/stance/points", "an open path does not continue past its last point; exchange them")
+        yield Contradiction("/stance/points", compose("path-stance-wraps-around"))
     elif max(first, last) < count and _is_degenerate(problem, first, last):
-        yield Contradiction("/stance/points", "the two points coincide and define no line")
+        yield Contradiction("/stance/points", compose("path-stance-points-coincide"))
     if stance.flatness is None and stance.speed == "any":
-        yield Contradiction("/stance", "constrains nothing; give its flatness, or a constant speed")
+        yield Contradiction("/stance", compose("path-stance-without-limits"))
     if stance.speed == "any" and stance.speed_tolerance is not None:
-        yield Contradiction("/stance/speed_tolerance", 'applies to a constant speed; set "speed": "constant"')
-    for path, excluded, detail in (
-        ("/method", problem.method == "exact", "exact points leave no freedom for a stance; fit them"),
-        ("/timing", problem.prescribed, "a stance needs free timing; it defines how P moves with the input"),
-        ("/placement_free", bool(problem.placement_free), "a stance lies where it is drawn; leave this out"),
-        ("/constraints/in_order", not problem.constraints.in_order, "a stance visits its points in order"),
+        yield Contradiction("/stance/speed_tolerance", compose("path-stance-speed-is-free"))
+    for path, excluded, message in (
+        ("/method", problem.method == "exact", "path-stance-on-exact-points"),
+        ("/timing", problem.prescribed, "path-stance-with-timing"),
+        ("/placement_free", bool(problem.placement_free), "path-stance-with-free-place"),
+        ("/constraints/in_order", not problem.constraints.in_order, "path-stance-out-of-order"),
     ):
         if excluded:
-            yield Contradiction(path, detail)
+            yield Contradiction(path, compose(message))
 
 
 def _is_degenerate(problem: PathProblem, first: int, last: int) -> bool:

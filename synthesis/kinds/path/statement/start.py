@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from kinematics.message import compose
 from synthesis.model.problem import Contradiction, Point, Statement
 
 if TYPE_CHECKING:
@@ -43,14 +44,14 @@ def find_start_errors(problem: PathProblem) -> list[Contradiction]:
     start = problem.start
     if start is None:
         return []
-    for path, excluded, detail in (
-        ("/method", problem.method != "least_squares", "a start is for least_squares only; choose that method"),
-        ("/timing", problem.prescribed, "a start is for points of free timing"),
-        ("/mechanism", problem.mechanism != "fourbar" or problem.mechanisms is not None, "a start must be a fourbar"),
-        ("/stance", problem.stance is not None, "a start is for fits of points alone; leave one of the two out"),
+    for path, excluded, message in (
+        ("/method", problem.method != "least_squares", "path-start-for-least-squares-only"),
+        ("/timing", problem.prescribed, "path-start-with-timing"),
+        ("/mechanism", problem.mechanism != "fourbar" or problem.mechanisms is not None, "path-start-is-no-fourbar"),
+        ("/stance", problem.stance is not None, "path-start-with-stance"),
     ):
         if excluded:
-            return [Contradiction(path, detail)]
+            return [Contradiction(path, compose(message))]
     if not start.is_linkage:
-        return [Contradiction("/start", "a link has no length; its two joints must differ")]
+        return [Contradiction("/start", compose("path-start-link-without-length"))]
     return []

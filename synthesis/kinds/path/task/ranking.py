@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from functools import partial
 
+from kinematics.message import compose
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.results.ranking import rank_designs, select_best, sort_designs
@@ -146,9 +147,12 @@ def explain_choice(designs: list[PathDesign], problem: PathProblem) -> str:
     # The first is practically the nearest: there is nothing to explain.
     if compute_error(first, problem) <= EQUAL_ERROR_RATIO * compute_error(nearest, problem):
         return ""
-    chosen, other, unit = first.metrics, nearest.metrics, problem.length_unit
-    return (
-        f" It comes first because of its transmission angle of {chosen.min_transmission_angle:.1f}°. The nearest "
-        f"design, with an rms distance of {other.rms_distance:.3g} {unit}, has only "
-        f"{other.min_transmission_angle:.1f}° and a link ratio of {other.link_ratio:.3g}."
+    chosen, other = first.metrics, nearest.metrics
+    return compose(
+        "path-first-for-transmission",
+        transmission_angle=f"{chosen.min_transmission_angle:.1f}",
+        rms_distance=f"{other.rms_distance:.3g}",
+        unit=problem.length_unit,
+        nearest_angle=f"{other.min_transmission_angle:.1f}",
+        link_ratio=f"{other.link_ratio:.3g}",
     )

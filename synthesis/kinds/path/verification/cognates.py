@@ -20,6 +20,7 @@ from kinematics.linkage.fourbar import (
     positions,
     traverse,
 )
+from kinematics.message import compose, join_messages
 from synthesis.kinds.path.design import PathCognate, PathDesign
 from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import DrivenFourbar, FourbarConfiguration, build_driven_fourbar, build_fourbar
@@ -29,6 +30,16 @@ MIN_INPUT_SEPARATION = 1e-9
 
 ANGLE_TOLERANCE = 0.05
 """Transmission angles that differ by less than this, in degrees, count as equal."""
+
+MOTION_NAMES = {
+    "double_crank": "path-double-crank",
+    "crank_rocker": "path-crank-rocker",
+    "rocker_crank": "path-rocker-crank",
+    "double_rocker": "path-double-rocker",
+    "rocker_rocker": "path-rocker-rocker",
+    "change_point": "path-change-point",
+}
+"""Messages with the names of the motions in Barker's classification."""
 
 
 def add_cognates(design: PathDesign) -> PathDesign:
@@ -44,7 +55,7 @@ def add_cognates(design: PathDesign) -> PathDesign:
     try:
         pair = build_cognates(source.linkage)
     except DimensionError:
-        text = "P is on a moving pivot, so that its path is a circle or an arc of one, and there are no cognates."
+        text = compose("path-no-cognates")
         return design.model_copy(update={"cognate_choice": text})
     measured = (
         _measure_cognate("left", pair.left, source, design),
@@ -88,25 +99,39 @@ def _measure_cognate(
 def _describe_choice(design: PathDesign, driven: list[PathCognate]) -> str:
     """Describe how the design and its cognates compare in transmission angle, full rotation and defects."""
     ours = design.metrics.min_transmission_angle
-    parts = [f"This {_format_motion(design.metrics.grashof)} has a minimum transmission angle of {ours:.1f}°."]
+    motion = design.metrics.grashof
+    sentences = [
+        compose("path-transmission-of-linkage", angle=f"{ours:.1f}")
+        if motion is None
+        else compose("path-transmission-of-type", type=compose(MOTION_NAMES[motion]), angle=f"{ours:.1f}")
+    ]
     for cognate in driven:
-        (x2, y2), (x4, y4) = cognate.mechanism.fixed_pivots.input, cognate.mechanism.fixed_pivots.output
-        name = (
-            f"The {cognate.side} cognate, a {_format_motion(cognate.grashof)} on ({x2:.4g}, {y2:.4g}) and ({x4:.4g}, "
-            f"{y4:.4g}),"
-        )
+        name = _name_cognate(cognate)
         if not cognate.same_branch:
-            parts.append(f"{name} passes a toggle between the points when its input drives.")
+            sentences.append(compose("path-cognate-passes-toggle", cognate=name))
         elif not cognate.visits_in_order:
-            parts.append(f"{name} does not meet the points in order when its input turns one way.")
+            sentences.append(compose("path-cognate-out-of-order", cognate=name))
         else:
             gain = cognate.min_transmission_angle - ours
-            better = "equal" if abs(gain) <= ANGLE_TOLERANCE else "larger" if gain > 0.0 else "smaller"
-            timing = "at the same crank angles" if cognate.same_timing else "its input turning with this one's coupler"
-            parts.append(f"{name} guides P through the points {timing}; its minimum transmission angle is {better}: ")
-            parts[-1] += f"{cognate.min_transmission_angle:.1f}°."
-    return " ".join(parts)
+            sentences.append(
+                compose(
+                    "path-cognate-with-same-timing" if cognate.same_timing else "path-cognate-with-other-timing",
+                    cognate=name,
+                    comparison="equal" if abs(gain) <= ANGLE_TOLERANCE else "larger" if gain > 0.0 else "smaller",
+                    angle=f"{cognate.min_transmission_angle:.1f}",
+                )
+            )
+    return join_messages(sentences)
 
 
-def _format_motion(motion: str | None) -> str:
-    return (motion or "linkage").replace("_", "-")
+def _name_cognate(cognate: PathCognate) -> str:
+    """Return the beginning of a sentence about a cognate: its side, its type and its fixed pivots."""
+    pivots = cognate.mechanism.fixed_pivots
+    return compose(
+        "path-left-cognate" if cognate.side == "left" else "path-right-cognate",
+        type=compose(MOTION_NAMES[cognate.grashof]),
+        input_x=f"{pivots.input[0]:.4g}",
+        input_y=f"{pivots.input[1]:.4g}",
+        output_x=f"{pivots.output[0]:.4g}",
+        output_y=f"{pivots.output[1]:.4g}",
+    )

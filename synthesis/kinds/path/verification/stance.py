@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check
@@ -117,5 +118,9 @@ def describe_stance(designs: Sequence[PathDesign], problem: PathProblem) -> str:
     uneven = [metrics.stance_speed_deviation for metrics in passed if metrics.stance_speed_deviation is not None]
     if problem.stance is None or problem.is_listed_later or not flatness:
         return ""
-    text = f" The flattest stance lies within a band of {min(flatness):.3g} {problem.length_unit}"
-    return text + (f"; the most even speed stays within {100.0 * min(uneven):.3g} % of its mean." if uneven else ".")
+    band, unit = f"{min(flatness):.3g}", problem.length_unit
+    if not uneven:
+        return compose("path-flattest-stance", flatness=band, unit=unit)
+    return compose(
+        "path-flattest-and-most-even-stance", flatness=band, unit=unit, deviation=f"{100.0 * min(uneven):.3g}"
+    )
