@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from service.imports.limits import MAX_POINTS
 from service.imports.thinning import add_farthest, limit_points, measure_deviation, reduce_points
 from service.outlines.curves import STRAIGHTNESS_TOLERANCE, count_chords, flatten_pieces, make_line
-from service.outlines.faults import UnsuitableDrawing
+from service.outlines.faults import Obstacle, UnsuitableDrawing
 from service.outlines.limits import DEFAULT_TOLERANCE
 
 DUPLICATE_TOLERANCE = 1e-12
@@ -61,7 +62,7 @@ def select_piece_points(pieces: Complex, closed: bool, request: PointRequest) ->
     """
     pieces = pieces[np.ptp(pieces.real, axis=1) + np.ptp(pieces.imag, axis=1) > 0.0]
     if not len(pieces):
-        raise ValueError("its length is zero")
+        raise Obstacle("imports-length-zero")
     if closed and pieces[-1, 3] != pieces[0, 0]:
         pieces = np.concatenate([pieces, make_line(pieces[-1, 3], pieces[0, 0])])
     extent = _measure_extent(pieces.ravel())
@@ -69,9 +70,7 @@ def select_piece_points(pieces: Complex, closed: bool, request: PointRequest) ->
     chords = DENSE_CHORD_SHARE * tolerance
     counts = count_chords(pieces, chords)
     if counts.sum() > MAX_POINTS:
-        raise UnsuitableDrawing(
-            f"A curve has more than {MAX_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
-        )
+        raise UnsuitableDrawing(compose("imports-curve-too-long", limit=MAX_POINTS, tolerance=f"{tolerance:.4g}"))
     dense = flatten_pieces(pieces, chords)
     lines = find_straight(pieces)
     kept = np.zeros(len(dense), bool)
@@ -109,9 +108,9 @@ def _select_points(
             dense, kept = dense[:-1], kept[:-1]
         dense, kept = np.append(dense, dense[0]), np.append(kept, True)
     if len(dense) < 2:
-        raise ValueError("its length is zero")
+        raise Obstacle("imports-length-zero")
     if closed and len(dense) < 4:
-        raise ValueError("it encloses no area")
+        raise Obstacle("imports-no-area")
     if request.tolerance is not None:
         kept = np.zeros(len(dense), bool)
     chosen = reduce_points(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))

@@ -10,6 +10,7 @@ import os
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+from kinematics.message import compose
 from service.imports import reader
 from service.imports.limits import MEMORY_MB, READ_TIMEOUT_S
 from service.jobs.processes.request_pool import GivenUp, Limits, PoolMetrics, ProcessStart, RequestPool
@@ -46,9 +47,9 @@ class ImportDesk:
         try:
             answer = await self.pool.call(gone, tenant, reader.read, door, content, asked)
         except GivenUp as error:
-            longer, more = f"longer than {READ_TIMEOUT_S:g} seconds to read", "more memory to read than a file has here"
-            taken = longer if error.of == "time" else more
-            raise UnsuitableDrawing(f"The file takes {taken}; send a smaller or simpler one.") from None
+            if error.of == "time":
+                raise UnsuitableDrawing(compose("imports-reading-too-long", seconds=f"{READ_TIMEOUT_S:g}")) from None
+            raise UnsuitableDrawing(compose("imports-reading-too-large")) from None
         if isinstance(answer, reader.Fault):
             raise answer.to_error()
         assert isinstance(answer, bytes)

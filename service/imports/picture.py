@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from service.imports.contours import TooManyCrossings, trace_contours
 from service.imports.limits import MAX_CROSSINGS, MAX_PIXELS
 from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
@@ -74,10 +75,7 @@ def read_picture(content: bytes) -> Picture:
     try:
         found = trace_contours(field, level, MAX_CROSSINGS)
     except TooManyCrossings:
-        raise UnsuitableDrawing(
-            f"The contours of the picture have more than {MAX_CROSSINGS} points, like those of a photograph. Send a "
-            "drawing in two colours."
-        ) from None
+        raise UnsuitableDrawing(compose("imports-contours-too-long", limit=MAX_CROSSINGS)) from None
     # The padding shifts the samples by 1, and a sample lies in the middle of its pixel, at 1/2: together the crossings
     # are shifted by 1/2.
     kept = [one - complex(0.5, 0.5) for one in found if len(one) >= MIN_CONTOUR_CROSSINGS]
@@ -100,7 +98,7 @@ def _read_samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float,
     except UnsuitableDrawing:
         raise
     except BROKEN_FILE_ERRORS as error:
-        raise MalformedDrawing(f"The picture cannot be read as PNG ({type(error).__name__}).") from None
+        raise MalformedDrawing(compose("imports-png-unreadable", error=type(error).__name__)) from None
     density = picture.info.get("dpi")
     opacity = None
     if picture.mode.startswith("I"):
@@ -119,7 +117,7 @@ def _read_samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float,
 
 def _check_size(width: int, height: int) -> None:
     if width * height > MAX_PIXELS:
-        raise UnsuitableDrawing(f"The picture has {width} × {height} pixels, more than {MAX_PIXELS}.")
+        raise UnsuitableDrawing(compose("imports-too-many-pixels", width=width, height=height, limit=MAX_PIXELS))
 
 
 def _build_field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]:
@@ -129,9 +127,7 @@ def _build_field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, 
         return np.pad(opacity, 1), 127.5
     least, most = int(lightness.min()), int(lightness.max())
     if most - least < MIN_CONTRAST:
-        raise UnsuitableDrawing(
-            "The picture has too little contrast; send dark lines on a light background or the reverse."
-        )
+        raise UnsuitableDrawing(compose("imports-contrast-too-low"))
     middle = 0.5 * (least + most)
     # The level must differ from every sample: samples are integers, so a fraction is added if necessary.
     level = middle if middle % 1.0 else middle + 0.25

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.arrays import Complex
+from kinematics.message import Message, compose
 from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
 from service.imports.curve_points import (
     PointRequest,
@@ -22,10 +23,10 @@ from service.imports.curve_points import (
 from service.imports.limits import DEFAULT_POINTS, MAX_CURVES, MAX_DENSE_POINTS, MAX_POINTS, PNG_SIGNATURE
 from service.imports.picture import COARSE_TOLERANCE, FINE_TOLERANCE, read_picture
 from service.imports.table import read_table
-from service.outlines.answer import DrawingUnit, describe_source, format_sentence, list_left_out, truncate_text
+from service.outlines.answer import DrawingUnit, describe_source, list_left_out, list_reasons
 from service.outlines.curves import Curve, Source, make_line
 from service.outlines.drawing import Drawing
-from service.outlines.faults import ForeignFormat, NoOutline, UnsuitableDrawing
+from service.outlines.faults import ForeignFormat, NoOutline, UnsuitableDrawing, get_reason
 from service.outlines.formats import MILLIMETRES_PER_UNIT, convert_units, measure_extent, read_drawing
 from service.outlines.joining import find_chains
 from service.outlines.limits import DEFAULT_TOLERANCE, JOIN_GAP_SHARE, MAX_COORDINATE
@@ -53,7 +54,7 @@ class FoundCurve:
         return measure_length(self.drawn) if self.drawn.ndim == 2 else measure_polyline(points, self.closed)
 
 
-LeftOut = list[tuple[Source, str]]
+LeftOut = list[tuple[Source, Message]]
 
 
 def read_curves(
@@ -97,7 +98,7 @@ def read_curves(
         if drawing is not None:
             return _read_drawing(drawing, length_unit, requested)
         if not tables:
-            raise ForeignFormat("The body is neither SVG, DXF text nor PNG; a table is sent as text/csv.")
+            raise ForeignFormat(compose("imports-format-or-table-type"))
         return _read_table(content, length_unit, requested)
 
 
@@ -121,7 +122,7 @@ def _connect_curves(curves: Sequence[Curve], reach: float) -> tuple[list[FoundCu
         if not one.closed and measure_extent([one]) > reach:
             open_.append(one)
         elif not one.closed:
-            tiny.append((one.source, "it is not longer than the gap for joining ends"))
+            tiny.append((one.source, Message("imports-shorter-than-gap", {})))
     found = [([one], True) for one in curves if one.closed]
     found += [(chain.members, chain.closed) for chain in find_chains(open_, reach)]
     found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
@@ -150,7 +151,7 @@ def _read_picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | 
         )
         for one, steps in zip(picture.contours, picture.stepped, strict=True)
     ]
-    left_out: LeftOut = [(Source("contour"), "it encloses only a few pixels")] * picture.specks
+    left_out: LeftOut = [(Source("contour"), Message("imports-few-pixels", {}))] * picture.specks
     millimetres = None if unit is None else across * MILLIMETRES_PER_UNIT[unit]
     return _build_answer("png", found, left_out, millimetres, unit, across, request)
 
@@ -186,14 +187,14 @@ def _build_answer(
         except ValueError as error:
             if isinstance(error, UnsuitableDrawing):
                 raise
-            left_out.append((one.source, str(error)))
+            left_out.append((one.source, get_reason(error)))
             continue
         if not np.all(np.abs(points) <= MAX_COORDINATE):
-            left_out.append((one.source, f"its coordinates exceed {MAX_COORDINATE:g} or are not numbers"))
+            left_out.append((one.source, Message("imports-coordinates-out-of-range", {"limit": f"{MAX_COORDINATE:g}"})))
             continue
         total, looked = total + len(points), looked + looked_at
         if total > MAX_POINTS or looked > MAX_DENSE_POINTS:
-            raise UnsuitableDrawing(f"The curves take more than {MAX_POINTS} points together; give a larger tolerance.")
+            raise UnsuitableDrawing(compose("imports-too-many-points", limit=MAX_POINTS))
         named: dict[str, Any] = describe_source(one.source)
         curves.append(
             ImportedCurve(
@@ -206,10 +207,8 @@ def _build_answer(
             )
         )
     if not curves:
-        reasons = [
-            (truncate_text(source.id or source.element) or "", format_sentence(reason)) for source, reason in left_out
-        ]
-        raise NoOutline("The file has no curve." if reasons else "The file has no curve: it draws nothing.", reasons)
+        reasons = list_reasons(left_out)
+        raise NoOutline(compose("imports-no-curve") if reasons else compose("imports-nothing-drawn"), reasons)
     return Imports(
         format=format_,
         millimetres_per_unit=millimetres,
@@ -227,7 +226,7 @@ def _select_largest(found: Sequence[FoundCurve]) -> tuple[Sequence[FoundCurve], 
         return found, []
     size = np.array([max(np.ptp(one.drawn.real), np.ptp(one.drawn.imag)) for one in found])
     kept = set(np.argsort(-size, kind="stable")[:MAX_CURVES].tolist())
-    reason = f"it is smaller than the {MAX_CURVES} curves of an answer"
+    reason = Message("imports-smaller-than-listed", {"count": MAX_CURVES})
     return (
         [one for k, one in enumerate(found) if k in kept],
         [(one.source, reason) for k, one in enumerate(found) if k not in kept],

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from service.imports.limits import MAX_COLUMNS, MAX_CURVES, MAX_POINTS
 from service.outlines.faults import ForeignFormat, MalformedDrawing, UnsuitableDrawing
 from service.outlines.formats import MILLIMETRES_PER_UNIT
@@ -49,7 +50,7 @@ def read_table(content: bytes) -> Table:
     rows = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
     first = next((line for _, line in rows if line), None)
     if first is None:
-        raise UnsuitableDrawing("The table has no rows.")
+        raise UnsuitableDrawing(compose("imports-table-empty"))
     separator = next((one for one in ";\t," if one in first), None)
     decimal_comma = separator != ","
     names, millimetres, columns = None, None, (0, 1)
@@ -65,14 +66,14 @@ def read_table(content: bytes) -> Table:
             names, columns, millimetres = _find_columns(cells)
             continue
         if len(cells) <= max(columns) or len(cells) > MAX_COLUMNS:
-            raise MalformedDrawing(f"Line {n} of the table does not have two columns of numbers.")
+            raise MalformedDrawing(compose("imports-table-columns", line=f"{n}"))
         curves[-1].append(complex(*(_parse_number(cells[k], decimal_comma, n) for k in columns)))
         count += 1
         if count > MAX_POINTS or len(curves) > MAX_CURVES:
-            raise UnsuitableDrawing(f"The table has more than {MAX_POINTS} points, or more than {MAX_CURVES} curves.")
+            raise UnsuitableDrawing(compose("imports-table-too-long", points=MAX_POINTS, curves=MAX_CURVES))
     found = [np.array(curve) for curve in curves if curve]
     if not found:
-        raise UnsuitableDrawing("The table has a header but no points.")
+        raise UnsuitableDrawing(compose("imports-table-without-points"))
     return Table(found, names, millimetres)
 
 
@@ -84,7 +85,7 @@ def _decode_text(content: bytes) -> str:
         # An old 8-bit encoding: only the names can contain other letters, and Latin-1 decodes any bytes.
         text = content.decode("latin-1")
     if any(code < " " and code not in "\t\r\n\f\v" for code in set(text)):
-        raise ForeignFormat("The body is neither SVG, DXF as text, PNG nor a table of points.")
+        raise ForeignFormat(compose("imports-foreign-format"))
     return text
 
 
@@ -99,7 +100,7 @@ def _find_columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], f
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
     if len(cells) < 2:
-        raise UnsuitableDrawing("The table has one column; it needs two, x and y.")
+        raise UnsuitableDrawing(compose("imports-table-single-column"))
     stated: set[str] = {found[2] if (found := parted[k]) else "" for k in columns}
     units: dict[str, float] = {unit: MILLIMETRES_PER_UNIT[unit] for unit in MILLIMETRES_PER_UNIT}
     return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
@@ -112,8 +113,8 @@ def _replace_comma(cell: str, decimal_comma: bool) -> str:
 def _parse_number(cell: str, decimal_comma: bool, line: int) -> float:
     spelt = _replace_comma(cell[: MAX_CELL_LENGTH + 1], decimal_comma)
     if not _NUMBER.fullmatch(spelt) or len(spelt) > MAX_CELL_LENGTH:
-        raise MalformedDrawing(f"Line {line} of the table has a cell that is not a number.")
+        raise MalformedDrawing(compose("imports-table-cell-not-number", line=f"{line}"))
     value = float(spelt)
     if not abs(value) <= MAX_COORDINATE:
-        raise UnsuitableDrawing(f"Line {line} of the table has a number beyond {MAX_COORDINATE:g}.")
+        raise UnsuitableDrawing(compose("imports-table-number-too-large", line=f"{line}", limit=f"{MAX_COORDINATE:g}"))
     return value

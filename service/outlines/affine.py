@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinematics.arrays import Complex
+from service.outlines.faults import Obstacle
 
 NUMBER_PATTERN = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FUNCTION_PATTERN = re.compile(r"[\s,]*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)")
@@ -73,10 +74,10 @@ def parse_transform(text: str) -> Affine:
     while at < len(text):
         found = _FUNCTION_PATTERN.match(text, at)
         if found is None or not _NUMBER_LIST_PATTERN.fullmatch(found[2]):
-            raise ValueError("its transform cannot be read")
+            raise Obstacle("outlines-transform-unreadable")
         numbers = [float(number) for number in re.findall(NUMBER_PATTERN, found[2])]
         if len(numbers) not in _ARGUMENT_COUNTS[found[1]]:
-            raise ValueError(f"its transform has {len(numbers)} numbers in {found[1]}(...)")
+            raise Obstacle("outlines-transform-number-count", count=len(numbers), function=found[1])
         # Functions apply from right to left: the last one maps first.
         whole = whole @ _make_affine(found[1], numbers)
         at = found.end()

@@ -7,7 +7,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from kinematics.message import Message
 from service.outlines.curves import Source
+from service.outlines.faults import describe_reason
 from service.outlines.limits import MAX_LISTED, MAX_NAME_LENGTH
 
 DrawingUnit = Literal["mm", "cm", "m", "in"]
@@ -76,10 +78,10 @@ def describe_source(source: Source) -> dict[str, str | None]:
     return {name: truncate_text(getattr(source, name)) for name in ("element", "id", "name", "layer")}
 
 
-def list_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
+def list_left_out(left_out: Sequence[tuple[Source, Message]]) -> list[LeftOut]:
     """Return the first elements without an outline, at most ``MAX_LISTED``, with their reasons."""
     return [
-        LeftOut(**describe_source(source), reason=format_sentence(reason)) for source, reason in left_out[:MAX_LISTED]
+        LeftOut(**describe_source(source), reason=describe_reason(reason)) for source, reason in left_out[:MAX_LISTED]
     ]
 
 
@@ -91,6 +93,9 @@ def truncate_text(text: str | None) -> str | None:
     return spelt if len(spelt) <= MAX_NAME_LENGTH else f"{spelt[: MAX_NAME_LENGTH - 1]}…"
 
 
-def format_sentence(reason: str) -> str:
-    """Return a reason as a sentence: capitalized, with a full stop."""
-    return f"{reason[:1].upper()}{reason[1:]}."
+def list_reasons(left_out: Sequence[tuple[Source, Message]]) -> list[tuple[str, str]]:
+    """Return the ids of the first elements without an outline, at most ``MAX_LISTED``, with their reasons."""
+    return [
+        (truncate_text(source.id or source.element) or "", describe_reason(reason))
+        for source, reason in left_out[:MAX_LISTED]
+    ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from kinematics.message import Message
 from service.outlines.curves import Curve, Source
 
 
@@ -18,5 +19,5 @@ class Drawing:
 
     format: Literal["svg", "dxf"]
     curves: list[Curve]
-    left_out: list[tuple[Source, str]]
+    left_out: list[tuple[Source, Message]]
     millimetres: float | None

@@ -19,9 +19,10 @@ from ezdxf.lldxf.const import DXFError
 from ezdxf.path import Curve3To, Curve4To
 
 from kinematics.arrays import Complex
+from kinematics.message import Message, compose
 from service.outlines.curves import NO_PIECES, Circle, Curve, Source, make_line, make_quadratic
 from service.outlines.drawing import Drawing
-from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
+from service.outlines.faults import MalformedDrawing, Obstacle, UnsuitableDrawing, get_reason
 from service.outlines.limits import MAX_COORDINATE, MAX_DEPTH, MAX_ELEMENTS, MAX_PIECES
 from service.outlines.path_data import SEGMENTS_PER_TURN
 from service.outlines.references import grid_of, require_countable
@@ -51,7 +52,7 @@ class DxfReader:
     def __init__(self, layers: dict[str, bool]) -> None:
         self.hidden = {name for name, shown in layers.items() if not shown}
         self.found: list[Curve] = []
-        self.left_out: list[tuple[Source, str]] = []
+        self.left_out: list[tuple[Source, Message]] = []
         self.visited = self.pieces = 0
 
     def shows(self, entity: DXFEntity) -> bool:
@@ -66,9 +67,7 @@ class DxfReader:
         """Read an entity; ``above`` is the insert that contains it, or an empty source."""
         self.visited += 1
         if self.visited > MAX_ELEMENTS:
-            raise UnsuitableDrawing(
-                f"The drawing has more than {MAX_ELEMENTS} entities, counting each insertion of a block."
-            )
+            raise UnsuitableDrawing(compose("outlines-too-many-entities", limit=MAX_ELEMENTS))
         type_ = entity.dxftype()
         layer, handle, invisible = (_get_attribute(entity, name) for name in ("layer", "handle", "invisible"))
         # Entities on layer 0 of a block take the layer of the insert (AutoCAD's rule).
@@ -85,24 +84,28 @@ class DxfReader:
             elif type_ in PATH_TYPES:
                 self.add(_read_curve(entity, source))
             else:
-                raise ValueError("it is text" if type_ in TEXT_TYPES else "entities of its type give no outline")
+                raise Obstacle(
+                    "outlines-element-is-dxf-text" if type_ in TEXT_TYPES else "outlines-entity-without-outline"
+                )
         except UnsuitableDrawing:
             raise
         except ValueError as error:
-            self.left_out.append((source, str(error)))
+            self.left_out.append((source, get_reason(error)))
         except (DXFError, TypeError, AttributeError, ArithmeticError, LookupError):
             # ezdxf raises any of these for an entity that lacks attributes of its type.
-            self.left_out.append((source, "it lacks what an entity of its type has"))
+            self.left_out.append((source, Message("outlines-entity-incomplete", {})))
 
     def insert(self, entity: Insert, source: Source, depth: int) -> None:
         """Read the entities of a block at every place where it is inserted."""
         if depth >= MAX_DEPTH:
-            raise UnsuitableDrawing(f"The drawing nests blocks more than {MAX_DEPTH} deep.")
+            raise UnsuitableDrawing(compose("outlines-blocks-nested-too-deep", limit=MAX_DEPTH))
         rows, columns = grid_of(entity)
         if rows * columns > MAX_ELEMENTS:
-            raise UnsuitableDrawing(f"A block is inserted {rows} × {columns} times, more than {MAX_ELEMENTS}.")
+            raise UnsuitableDrawing(
+                compose("outlines-block-inserted-too-often", rows=rows, columns=columns, limit=MAX_ELEMENTS)
+            )
         if entity.block() is None:
-            raise ValueError("it inserts a block that is not in the drawing")
+            raise Obstacle("outlines-block-missing")
         for one in entity.multi_insert() if rows * columns > 1 else (entity,):
             for inner in one.virtual_entities():
                 self.visit(inner, source, depth + 1)
@@ -111,7 +114,7 @@ class DxfReader:
         """Append a curve; refuse the drawing if it has too many pieces."""
         self.pieces += max(len(curve.pieces), 1)
         if self.pieces > MAX_PIECES:
-            raise UnsuitableDrawing(f"The drawing has more than {MAX_PIECES} lines and curves.")
+            raise UnsuitableDrawing(compose("outlines-too-many-pieces", limit=MAX_PIECES))
         self.found.append(curve)
 
 
@@ -126,9 +129,9 @@ def read_curves(content: bytes) -> Drawing:
         If the drawing exceeds the limits.
     """
     if b"\0" in content:
-        raise MalformedDrawing("The drawing contains NUL characters, which text DXF never does.")
+        raise MalformedDrawing(compose("outlines-dxf-with-nul"))
     if not content.rstrip().endswith(b"EOF"):
-        raise MalformedDrawing("The drawing does not end with EOF; it may be truncated.")
+        raise MalformedDrawing(compose("outlines-dxf-without-eof"))
     # The recovery reader also accepts files of programs that do not follow the format strictly. Unreadable numbers,
     # which it replaces by guesses, are refused below.
     try:
@@ -137,7 +140,7 @@ def read_curves(content: bytes) -> Drawing:
         layers = {layer.dxf.name.lower(): not (layer.is_off() or layer.is_frozen()) for layer in document.layers}
         unit = document.header.get("$INSUNITS", 0)
     except Exception as error:  # a broken file can cause any exception in the library
-        raise MalformedDrawing(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
+        raise MalformedDrawing(compose("outlines-dxf-unreadable", error=type(error).__name__)) from None
     _refuse_guesses(auditor)
     reader = DxfReader(layers)
     require_countable(entities, reader.shows)
@@ -156,7 +159,9 @@ def _refuse_guesses(auditor: Auditor) -> None:
     for fault in auditor.errors:
         if fault.code in _GUESS_ERROR_CODES:
             line = _LINE_PATTERN.search(fault.message)
-            raise MalformedDrawing(f"A number of the drawing cannot be read{f', near line {line[1]}' if line else ''}.")
+            if line is None:
+                raise MalformedDrawing(compose("outlines-number-unreadable"))
+            raise MalformedDrawing(compose("outlines-number-unreadable-near-line", line=line[1]))
 
 
 def _get_millimetres_per_unit(unit: int) -> float | None:
@@ -176,13 +181,13 @@ def _read_curve(entity: DXFEntity, source: Source) -> Curve:
         centre = entity.ocs().to_wcs(entity.dxf.center)
         # Circles seen from above or below stay exact circles.
         if not 0.0 < entity.dxf.radius <= MAX_COORDINATE:
-            raise ValueError("its radius is not positive, or too large")
+            raise Obstacle("outlines-radius-unsuitable")
         return Curve(source, NO_PIECES, True, Circle(complex(centre.x, centre.y), float(entity.dxf.radius)))
     drawn = path.make_path(entity, segments=_count_requested_segments(entity))
     if not len(drawn):
-        raise ValueError("it has no length")
+        raise Obstacle("outlines-length-zero")
     if drawn.has_sub_paths:
-        raise ValueError("it has several parts")
+        raise Obstacle("outlines-several-parts")
     at = complex(drawn.start.x, drawn.start.y)
     heights, pieces = [drawn.start.z], []
     for command in drawn.commands():
@@ -207,11 +212,11 @@ def _count_requested_segments(entity: DXFEntity) -> int:
 def _read_spline(entity: Spline) -> Complex:
     # Control points, if present, make solving the linear system unnecessary.
     if entity.fit_point_count() > MAX_FIT_POINTS and not entity.control_point_count():
-        raise ValueError(f"it passes through more than {MAX_FIT_POINTS} points")
+        raise Obstacle("outlines-too-many-fit-points", limit=MAX_FIT_POINTS)
     tool = entity.construction_tool()
     points = np.array([complex(point.x, point.y) for point in tool.control_points])
     if not np.all(np.abs(points) <= MAX_COORDINATE):
-        raise ValueError("its coordinates are too large, or no numbers")
+        raise Obstacle("outlines-coordinates-unsuitable")
     weights = tool.weights() or [1.0] * len(points)
     return _check_flat(
         convert_spline(tool.degree, tool.knots(), points, weights), [point.z for point in tool.control_points]
@@ -221,5 +226,5 @@ def _read_spline(entity: Spline) -> Complex:
 def _check_flat(pieces: Complex, heights: list[float]) -> Complex:
     rise = max(heights) - min(heights)
     if not rise <= FLATNESS_TOLERANCE * float(np.abs(pieces - pieces[0, 0]).max()):
-        raise ValueError("it does not lie in a plane parallel to xy")
+        raise Obstacle("outlines-not-parallel-to-xy")
     return pieces

@@ -1,8 +1,14 @@
-"""Reasons why a drawing gives no outlines."""
+"""Reasons why a drawing gives no outlines, and why an element gives none.
+
+A drawing may have thousands of elements without an outline, of which an answer lists a few. Their reasons are messages
+that are composed only when they are listed.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+
+from kinematics.message import Message, Value, make_sentence, remember
 
 
 class DrawingError(ValueError):
@@ -27,3 +33,21 @@ class NoOutline(DrawingError):
     def __init__(self, message: str, reasons: Sequence[tuple[str, str]]) -> None:
         super().__init__(message)
         self.reasons = reasons
+
+
+class Obstacle(ValueError):
+    """An element gives no outline or no curve; ``reason`` is the message that says why."""
+
+    def __init__(self, message_id: str, /, **values: Value) -> None:
+        super().__init__(message_id)
+        self.reason = Message(message_id, values)
+
+
+def get_reason(error: ValueError) -> Message:
+    """Return the message that says why an element gives no outline."""
+    return error.reason if isinstance(error, Obstacle) else Message("outlines-element-unreadable", {})
+
+
+def describe_reason(reason: Message) -> str:
+    """Compose the reason as a sentence."""
+    return make_sentence(remember(reason))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.message import Message, compose
 from service.outlines import dxf, svg
 from service.outlines.answer import DrawingUnit
 from service.outlines.curves import Curve, Source
@@ -25,7 +26,7 @@ class DrawingCurves(NamedTuple):
     """The curves of a drawing in the unit of the answer; ``scale`` is the number of those units in a drawing unit."""
 
     curves: list[Curve]
-    left_out: list[tuple[Source, str]]
+    left_out: list[tuple[Source, Message]]
     scale: float
     unit: DrawingUnit | None
 
@@ -39,11 +40,11 @@ def read_drawing(content: bytes) -> Drawing | None:
         If the content is invalid in the format that its first bytes indicate, or that format is not supported.
     """
     if content.startswith(b"AutoCAD Binary DXF"):
-        raise ForeignFormat("The body is a binary DXF file; save it as text (ASCII) DXF.")
+        raise ForeignFormat(compose("outlines-binary-dxf"))
     if content.startswith(b"AC10"):
-        raise ForeignFormat("The body is a DWG file; save it as text (ASCII) DXF.")
+        raise ForeignFormat(compose("outlines-dwg"))
     if content.startswith(_COMPRESSED_SIGNATURES):
-        raise ForeignFormat("The body is compressed; send the drawing itself.")
+        raise ForeignFormat(compose("outlines-compressed"))
     # Editors on Windows write a byte-order mark before UTF-8.
     bare = content.removeprefix(b"\xef\xbb\xbf")
     if bare.lstrip()[:1] == b"<" or content[:4] in (b"\xff\xfe<\0", b"\xfe\xff\0<"):
@@ -59,13 +60,14 @@ def convert_units(drawing: Drawing, length_unit: DrawingUnit | None) -> DrawingC
     if length_unit is not None and drawing.millimetres is not None:
         scale, unit = drawing.millimetres / MILLIMETRES_PER_UNIT[length_unit], length_unit
     left_out = list(drawing.left_out)
+    out_of_range = Message("outlines-coordinates-out-of-range", {"limit": f"{MAX_COORDINATE:g}"})
     curves = []
     for one in drawing.curves:
         curve = one.scale_by(scale)
         if curve.finite:
             curves.append(curve)
         else:
-            left_out.append((one.source, f"its coordinates go beyond {MAX_COORDINATE:g}, or are no numbers"))
+            left_out.append((one.source, out_of_range))
     return DrawingCurves(curves, left_out, scale, unit)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from kinematics.arrays import Complex
+from kinematics.message import Message
 from service.outlines.curves import Curve, reverse_curve
 
 FREE_END, BRANCH_END = -1, -2
@@ -52,7 +53,7 @@ def find_chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
     return found
 
 
-def join_curves(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
+def join_curves(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, Message]]]:
     """Return the closed chains of open curves, and the remaining curves with the reason."""
     rings, alone = [], []
     for chain in find_chains(curves, reach):
@@ -96,11 +97,11 @@ def _select_up_to_three(places: Complex) -> NDArray[np.int64]:
     return np.asarray(np.sort(order[~fourth]))
 
 
-def _describe_gap(chain: Chain) -> str:
+def _describe_gap(chain: Chain) -> Message:
     if chain.branching:
-        return "more than two open elements meet at one point there"
+        return Message("outlines-branching-ends", {})
     members = chain.members
     gap = abs(members[-1].end - members[0].start)
     if len(members) == 1:
-        return f"it is open: its ends are {gap:.4g} apart"
-    return f"it is open: it is joined to {len(members) - 1} others, and their ends are {gap:.4g} apart"
+        return Message("outlines-open-ends", {"gap": f"{gap:.4g}"})
+    return Message("outlines-open-chain", {"count": len(members) - 1, "gap": f"{gap:.4g}"})

@@ -14,8 +14,9 @@ from ezdxf.math import cubic_bezier_arc_parameters
 from fontTools.svgLib.path import parse_path
 
 from kinematics.arrays import Complex
+from kinematics.message import compose
 from service.outlines.curves import make_bezier, make_line, make_quadratic
-from service.outlines.faults import UnsuitableDrawing
+from service.outlines.faults import Obstacle, UnsuitableDrawing
 from service.outlines.limits import MAX_COORDINATE, MAX_PIECES
 
 SEGMENTS_PER_TURN = 16
@@ -90,7 +91,7 @@ def parse_subpaths(data: str) -> list[Subpath]:
     tokens = list(_parse_tokens(data))
     # The longest command, an arc, has one letter and seven numbers.
     if len(tokens) > 8 * MAX_PIECES:
-        raise UnsuitableDrawing(f"A path has more than {MAX_PIECES} pieces.")
+        raise UnsuitableDrawing(compose("outlines-path-too-long", limit=MAX_PIECES))
     parse_path(" ".join(tokens), pen)
     return [path for path in pen.subpaths if path.pieces]
 
@@ -102,18 +103,18 @@ def _parse_tokens(data: str) -> Iterator[str]:
         if found := _COMMAND_PATTERN.match(data, at):
             command, at = found[1], found.end()
             if command.upper() not in _ARGUMENT_COUNTS:
-                raise ValueError(f"it has no command “{command}”, at character {at - 1}")
+                raise Obstacle("outlines-unknown-path-command", command=command, position=f"{at - 1}")
             yield command
             if command in "Zz":
                 continue
         elif not command or command in "Zz":
-            raise ValueError(f"a command is missing at character {at}")
+            raise Obstacle("outlines-path-command-missing", position=f"{at}")
         for k in range(_ARGUMENT_COUNTS[command.upper()]):
             # A flag is a single digit and may touch the following number.
             pattern = _FLAG_PATTERN if command in "Aa" and k in _FLAG_POSITIONS else _NUMBER_PATTERN
             found = pattern.match(data, at)
             if found is None:
-                raise ValueError(f"a number is missing at character {at}")
+                raise Obstacle("outlines-path-number-missing", position=f"{at}")
             at = found.end()
             yield found[1] if pattern is _FLAG_PATTERN else _format_number(found[1])
 
@@ -126,7 +127,7 @@ def _skip_separators(data: str, at: int) -> int:
 def _format_number(number: str) -> str:
     value = float(number)
     if not abs(value) <= MAX_COORDINATE:
-        raise ValueError(f"the number {number[:20]} is too large")
+        raise Obstacle("outlines-number-too-large", number=number[:20])
     return repr(value)
 
 

@@ -8,19 +8,19 @@ import numpy as np
 import shapely
 
 from kinematics.arrays import Complex
+from kinematics.message import Message, compose
 from service.outlines.answer import (
     DrawingUnit,
     DrawnCircle,
     Outline,
     Outlines,
     describe_source,
-    format_sentence,
     list_left_out,
-    truncate_text,
+    list_reasons,
 )
 from service.outlines.curves import Circle, Curve, Source, count_chords, flatten_pieces
 from service.outlines.drawing import Drawing
-from service.outlines.faults import ForeignFormat, NoOutline, UnsuitableDrawing
+from service.outlines.faults import ForeignFormat, NoOutline, Obstacle, UnsuitableDrawing, get_reason
 from service.outlines.formats import convert_units, measure_extent, read_drawing
 from service.outlines.joining import join_curves
 from service.outlines.limits import (
@@ -70,7 +70,7 @@ def read_outlines(
     with np.errstate(all="ignore"):
         drawing = read_drawing(content)
         if drawing is None:
-            raise ForeignFormat("The body is neither SVG nor the text form of DXF.")
+            raise ForeignFormat(compose("outlines-foreign-format"))
         return _collect_outlines(drawing, tolerance, length_unit)
 
 
@@ -81,18 +81,15 @@ def _collect_outlines(drawing: Drawing, tolerance: float | None, length_unit: Dr
     found, open_ = _find_closed(curves, JOIN_GAP_SHARE * tolerance)
     left_out += open_
     if len(found) > MAX_OUTLINES:
-        raise UnsuitableDrawing(f"The drawing has {len(found)} closed outlines, more than {MAX_OUTLINES}.")
+        raise UnsuitableDrawing(compose("outlines-too-many-outlines", count=len(found), limit=MAX_OUTLINES))
     if sum(_count_vertices(members, tolerance) for members in found) > MAX_POINTS:
-        raise UnsuitableDrawing(
-            f"The outlines have more than {MAX_POINTS} vertices together at a tolerance of {tolerance:.4g}; "
-            "give a larger one."
-        )
+        raise UnsuitableDrawing(compose("outlines-too-many-vertices", limit=MAX_POINTS, tolerance=f"{tolerance:.4g}"))
     outlines = []
     for members in found:
         try:
             outlines.append(_make_outline(members, tolerance))
         except ValueError as error:
-            left_out.append((members[0].source, str(error)))
+            left_out.append((members[0].source, get_reason(error)))
     if not outlines:
         raise _describe_failure(left_out)
     return Outlines(
@@ -107,7 +104,7 @@ def _collect_outlines(drawing: Drawing, tolerance: float | None, length_unit: Dr
     )
 
 
-def _find_closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, str]]]:
+def _find_closed(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Source, Message]]]:
     """Return curves closed alone or by joining, in drawing order, and the sources of those that stay open."""
     closed = [[one] for one in curves if one.closed]
     # Elements shorter than the reach are left out, because they lie in gaps that joining closes.
@@ -130,7 +127,7 @@ def _make_outline(members: Sequence[Curve], tolerance: float) -> Outline:
     circle = members[0].circle or _fit_circle(np.concatenate([one.pieces for one in members]), tolerance)
     if circle is not None:
         if not circle.radius > 0.0:
-            raise ValueError("it encloses no area")
+            raise Obstacle("outlines-no-area")
         centre = (circle.centre.real, circle.centre.imag)
         return Outline(
             **named, circle=DrawnCircle(center=centre, radius=circle.radius), area=float(np.pi * circle.radius**2)
@@ -141,7 +138,7 @@ def _make_outline(members: Sequence[Curve], tolerance: float) -> Outline:
         shape = _make_polygon(members, 0.5 * tolerance).simplify(0.5 * tolerance)
     corners = np.array(shapely.geometry.polygon.orient(shape).exterior.coords)[:-1]
     if len(corners) > MAX_CORNERS:
-        raise ValueError(f"its polygon has {len(corners)} vertices, more than {MAX_CORNERS}; give a larger tolerance")
+        raise Obstacle("outlines-too-many-corners", count=len(corners), limit=MAX_CORNERS)
     return Outline(**named, polygon=[(float(x), float(y)) for x, y in corners], area=float(shape.area))
 
 
@@ -149,12 +146,12 @@ def _make_polygon(members: Sequence[Curve], tolerance: float) -> shapely.Polygon
     points = np.concatenate([flatten_pieces(one.pieces, tolerance)[:-1] for one in members])
     points = points[np.abs(points - np.roll(points, 1)) > DUPLICATE_TOLERANCE * np.abs(points).max()]
     if len(points) < 3:
-        raise ValueError("it encloses no area")
+        raise Obstacle("outlines-no-area")
     shape = shapely.Polygon(np.stack([points.real, points.imag], axis=1))
     if shape.convex_hull.area <= AREA_TOLERANCE * measure_extent(members) ** 2:
-        raise ValueError("it encloses no area")
+        raise Obstacle("outlines-no-area")
     if not shape.is_valid:
-        raise ValueError(f"it meets itself ({shapely.is_valid_reason(shape)})")
+        raise Obstacle("outlines-meets-itself", place=shapely.is_valid_reason(shape))
     return shape
 
 
@@ -189,11 +186,7 @@ def _count_turns(points: Complex) -> float:
     return float(np.angle(np.roll(points, -1) / points).sum() / (2.0 * np.pi))
 
 
-def _describe_failure(left_out: Sequence[tuple[Source, str]]) -> NoOutline:
-    reasons = [
-        (truncate_text(source.id or source.element) or "", format_sentence(reason)) for source, reason in left_out
-    ]
-    if not reasons:
-        return NoOutline("The drawing has no closed outline: it draws nothing.", [])
-    count = "One element is" if len(reasons) == 1 else f"{len(reasons)} elements are"
-    return NoOutline(f"The drawing has no closed outline; {count} not one, `errors` says why.", reasons)
+def _describe_failure(left_out: Sequence[tuple[Source, Message]]) -> NoOutline:
+    if not left_out:
+        return NoOutline(compose("outlines-nothing-drawn"), [])
+    return NoOutline(compose("outlines-none-closed", count=len(left_out)), list_reasons(left_out))

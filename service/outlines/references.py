@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.insert import Insert
 
+from kinematics.message import compose
 from service.outlines.faults import UnsuitableDrawing
 from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS
 
@@ -33,9 +34,7 @@ def require_countable(entities: Iterable[DXFEntity], shown: Shown) -> None:
         or if a block contains itself.
     """
     if _Counter(shown).count(entities, 0) > MAX_ELEMENTS:
-        raise UnsuitableDrawing(
-            f"The drawing has more than {MAX_ELEMENTS} entities, counting each insertion of a block."
-        )
+        raise UnsuitableDrawing(compose("outlines-too-many-entities", limit=MAX_ELEMENTS))
 
 
 def grid_of(insert: Insert) -> tuple[int, int]:
@@ -69,7 +68,7 @@ class _Counter:
             return 0
         name = str(block.name).lower()
         if name in self._open or depth >= MAX_DEPTH:
-            raise UnsuitableDrawing(f"The drawing has blocks more than {MAX_DEPTH} deep in one another.")
+            raise UnsuitableDrawing(compose("outlines-blocks-in-blocks", limit=MAX_DEPTH))
         if name not in self._counts:
             self._open.add(name)
             self._counts[name] = self.count(block, depth + 1)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
 from kinematics.arrays import Complex
+from service.outlines.faults import Obstacle
 
 MAX_DEGREE = 15
 """Highest degree that is read; drawings use 3, seldom 5."""
@@ -41,15 +42,15 @@ def convert_spline(degree: int, knots: Sequence[float], points: Complex, weights
     """
     t, w = np.array(knots, float), np.array(weights, float)
     if not 1 <= degree <= MAX_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:
-        raise ValueError("it has a number of knots, or a degree, that no spline has")
+        raise Obstacle("outlines-spline-knots-or-degree")
     if not (np.isfinite(t).all() and np.isfinite(w).all() and np.all(np.diff(t) >= 0.0) and w.min() > 0.0):
-        raise ValueError("its knots do not ascend, or its weights are not positive")
+        raise Obstacle("outlines-spline-knots-not-ascending")
     curve = BSpline(t, np.stack([w * points.real, w * points.imag, w], axis=1), degree)
     slope = curve.derivative()
     inner = t[degree : len(points) + 1]
     spans = np.unique(inner)
     if len(spans) < 2:
-        raise ValueError("its knots span nothing")
+        raise Obstacle("outlines-spline-knots-span-nothing")
     extent = float(np.abs(points - points[0]).max())
     count = 1
     while count <= MAX_CUBICS:
@@ -66,7 +67,7 @@ def convert_spline(degree: int, knots: Sequence[float], points: Complex, weights
             return np.asarray(found)
         # Not accurate enough: double the cubics in every span.
         count *= 2
-    raise ValueError("it bends too sharply to be followed")
+    raise Obstacle("outlines-bend-too-sharp")
 
 
 def _evaluate(curve: BSpline, t: NDArray[np.float64]) -> Complex:

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from kinematics.arrays import Complex
+from kinematics.message import Message, compose
 from service.outlines.affine import NUMBER_PATTERN, Affine, parse_transform
 from service.outlines.curves import NO_PIECES, Circle, Curve, Source, make_polyline
 from service.outlines.drawing import Drawing
-from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
+from service.outlines.faults import DrawingError, MalformedDrawing, Obstacle, UnsuitableDrawing, get_reason
 from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS, MAX_PIECES
 from service.outlines.path_data import make_unit_arc, parse_subpaths
 from service.outlines.xml_tree import Node, parse_xml
@@ -51,10 +52,11 @@ INVISIBLE_ELEMENTS = {
 """Elements that draw nothing in place. Gradients, filters and the like contain no shapes."""
 
 UNSUPPORTED_ELEMENTS = {
-    "text": "it is text; turn it into paths",
-    "image": "it is a picture",
-    "foreignObject": "it is no shape",
+    "text": "outlines-element-is-text",
+    "image": "outlines-element-is-picture",
+    "foreignObject": "outlines-element-is-no-shape",
 }
+"""Elements that are not read, with the messages that say why."""
 
 
 class SvgReader:
@@ -63,7 +65,7 @@ class SvgReader:
     def __init__(self, root: Node) -> None:
         self.root = root
         self.found: list[Curve] = []
-        self.left_out: list[tuple[Source, str]] = []
+        self.left_out: list[tuple[Source, Message]] = []
         self.visited = self.pieces = 0
         self.by_id: dict[str, Node] = {}
         # An explicit stack: the depth of the file must not exhaust Python's recursion.
@@ -79,9 +81,9 @@ class SvgReader:
         """Read an element and its children; ``above`` maps the coordinates of its parent to the drawing."""
         self.visited += 1
         if self.visited > MAX_ELEMENTS:
-            raise UnsuitableDrawing(f"The drawing has more than {MAX_ELEMENTS} elements, counting every use.")
+            raise UnsuitableDrawing(compose("outlines-too-many-svg-elements", limit=MAX_ELEMENTS))
         if depth > MAX_DEPTH:
-            raise UnsuitableDrawing(f"The drawing nests groups or uses more than {MAX_DEPTH} deep.")
+            raise UnsuitableDrawing(compose("outlines-groups-nested-too-deep", limit=MAX_DEPTH))
         space, _, name = node.name.rpartition(" ")
         if space not in (SVG_NAMESPACE, "") or name in INVISIBLE_ELEMENTS or _is_hidden(node):
             return
@@ -97,21 +99,21 @@ class SvgReader:
             elif name == "use":
                 self.use(node, place, layer, depth)
             elif name in UNSUPPORTED_ELEMENTS:
-                raise ValueError(UNSUPPORTED_ELEMENTS[name])
+                raise Obstacle(UNSUPPORTED_ELEMENTS[name])
             elif name in SHAPE_READERS:
                 for curve in SHAPE_READERS[name](node):
                     self.add(replace(curve, source=source), place)
+        except DrawingError:
+            raise
         except ValueError as error:
-            if isinstance(error, (UnsuitableDrawing, MalformedDrawing)):
-                raise
-            self.left_out.append((source, str(error)))
+            self.left_out.append((source, get_reason(error)))
 
     def use(self, node: Node, place: Affine, layer: str | None, depth: int) -> None:
         """Read the element that a ``use`` refers to."""
         link = node.attributes.get("href", node.attributes.get(f"{XLINK_NAMESPACE} href", ""))
         used = self.by_id.get(link[1:]) if link.startswith("#") else None
         if used is None:
-            raise ValueError("it uses something that is not in the drawing")
+            raise Obstacle("outlines-use-of-missing-element")
         place = place @ Affine(shift=complex(_read_length(node, "x"), _read_length(node, "y")))
         if used.name.rpartition(" ")[2] != "symbol":
             return self.visit(used, place, layer, depth + 1)
@@ -124,7 +126,7 @@ class SvgReader:
         """Append a curve given in the coordinates of its element; ``place`` maps them to the drawing."""
         self.pieces += max(len(curve.pieces), 1)
         if self.pieces > MAX_PIECES:
-            raise UnsuitableDrawing(f"The drawing has more than {MAX_PIECES} lines and curves.")
+            raise UnsuitableDrawing(compose("outlines-too-many-pieces", limit=MAX_PIECES))
         # A circle stays an exact circle under similarities; otherwise it becomes cubics.
         if curve.circle is not None:
             centre, radius = curve.circle.centre, curve.circle.radius
@@ -147,7 +149,7 @@ def read_curves(content: bytes) -> Drawing:
     """
     root = parse_xml(content)
     if root.name not in (f"{SVG_NAMESPACE} svg", "svg"):
-        raise MalformedDrawing("The drawing is XML, but its root element is not <svg>.")
+        raise MalformedDrawing(compose("outlines-root-not-svg"))
     place, unit = _map_page(root)
     reader = SvgReader(root)
     reader.visit(root, place, None, 0)
@@ -161,9 +163,12 @@ def _map_page(root: Node) -> tuple[Affine, float | None]:
     different factors in x and y, the smaller factor defines the unit.
     """
     width, height = (_parse_length(root.attributes.get(name, "")) for name in ("width", "height"))
-    box = _parse_numbers(root.attributes.get("viewBox", ""), "its viewBox")
+    try:
+        box = _parse_numbers(root.attributes.get("viewBox", ""), "outlines-view-box-unreadable")
+    except Obstacle:
+        raise MalformedDrawing(compose("outlines-page-view-box-unreadable")) from None
     if box and (len(box) != 4 or min(box[2:]) <= 0.0):
-        raise MalformedDrawing("The viewBox of the drawing is not four numbers with a width and a height.")
+        raise MalformedDrawing(compose("outlines-page-view-box-invalid"))
     tall = box[3] if box else height[0] * PIXELS_PER_UNIT[height[1]] if height else 0.0
     left, top = box[:2] if box else (0.0, 0.0)
     if not box:
@@ -190,16 +195,16 @@ def _map_inner(node: Node, *sized: Node) -> Affine:
     section 8.2). Content outside the rectangle is not clipped.
     """
     corner = Affine(shift=complex(_read_length(node, "x"), _read_length(node, "y")))
-    box = _parse_numbers(node.attributes.get("viewBox", ""), "its view box")
+    box = _parse_numbers(node.attributes.get("viewBox", ""), "outlines-view-box-unreadable")
     if not box:
         return corner
     if len(box) != 4 or min(box[2:]) <= 0.0:
-        raise ValueError("its view box is not four numbers with a width and a height")
+        raise Obstacle("outlines-view-box-invalid")
     width, height = (
         next((_read_length(one, name) for one in sized if name in one.attributes), 0.0) for name in ("width", "height")
     )
     if width <= 0.0 or height <= 0.0:
-        raise ValueError("it has a view box, and a width or height that depends on the page")
+        raise Obstacle("outlines-view-box-without-size")
     align, _, way = node.attributes.get("preserveAspectRatio", "").strip().partition(" ")
     across, down = width / box[2], height / box[3]
     if align != "none":
@@ -223,17 +228,14 @@ def _read_length(node: Node, name: str, default: float = 0.0) -> float:
         return default
     found = _LENGTH_PATTERN.fullmatch(node.attributes[name])
     if not found or found[2] not in PIXELS_PER_UNIT:
-        raise ValueError(f"its {name} is no length, or one that depends on the page")
+        raise Obstacle("outlines-length-unreadable", attribute=name)
     return float(found[1]) * PIXELS_PER_UNIT[found[2]]
 
 
-def _parse_numbers(text: str, what: str) -> list[float]:
+def _parse_numbers(text: str, message_id: str) -> list[float]:
+    """Parse a list of numbers; raise an obstacle with a message for anything else."""
     if not _NUMBER_LIST_PATTERN.fullmatch(text):
-        raise (
-            MalformedDrawing(f"The numbers of {what} cannot be read.")
-            if what == "its viewBox"
-            else ValueError(f"the numbers of {what} cannot be read")
-        )
+        raise Obstacle(message_id)
     return [float(number) for number in re.findall(NUMBER_PATTERN, text)]
 
 
@@ -258,18 +260,18 @@ _BLANK_SOURCE = Source("")
 def _read_path(node: Node) -> Iterator[Curve]:
     try:
         subpaths = parse_subpaths(node.attributes.get("d", ""))
+    except DrawingError:
+        raise
     except ValueError as error:
-        raise (
-            error if isinstance(error, UnsuitableDrawing) else ValueError(f"its path data is wrong: {error}")
-        ) from None
+        raise Obstacle("outlines-path-data-wrong", reason=get_reason(error)) from None
     for subpath in subpaths:
         yield Curve(_BLANK_SOURCE, np.concatenate(subpath.pieces), subpath.closed)
 
 
 def _read_polygon(node: Node) -> Iterator[Curve]:
-    numbers = _parse_numbers(node.attributes.get("points", ""), "its points")
+    numbers = _parse_numbers(node.attributes.get("points", ""), "outlines-points-unreadable")
     if len(numbers) % 2 or len(numbers) < 4:
-        raise ValueError("its points are not pairs of numbers, two at least")
+        raise Obstacle("outlines-points-not-pairs")
     points = np.array(numbers[::2]) + 1j * np.array(numbers[1::2])
     closed = node.name.endswith("polygon")
     yield Curve(_BLANK_SOURCE, make_polyline(np.append(points, points[0]) if closed else points), closed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from kinematics.message import compose
 from service.outlines.faults import MalformedDrawing, UnsuitableDrawing
 from service.outlines.limits import MAX_DEPTH, MAX_ELEMENTS
 
@@ -48,11 +49,11 @@ def parse_xml(content: bytes) -> Node:
         nonlocal count
         count += 1
         if count > MAX_ELEMENTS:
-            raise UnsuitableDrawing(f"The drawing has more than {MAX_ELEMENTS} elements.")
+            raise UnsuitableDrawing(compose("outlines-too-many-elements", limit=MAX_ELEMENTS))
         if len(open_) >= MAX_NESTING:
-            raise UnsuitableDrawing(f"The drawing has more than {MAX_NESTING} elements within one another.")
+            raise UnsuitableDrawing(compose("outlines-elements-nested-too-deep", limit=MAX_NESTING))
         if len(attributes) > MAX_ATTRIBUTES:
-            raise UnsuitableDrawing(f"An element of the drawing has more than {MAX_ATTRIBUTES} attributes.")
+            raise UnsuitableDrawing(compose("outlines-too-many-attributes", limit=MAX_ATTRIBUTES))
         node = Node(name, attributes)
         (open_[-1].children if open_ else roots).append(node)
         open_.append(node)
@@ -65,7 +66,7 @@ def parse_xml(content: bytes) -> Node:
             open_[-1].text.append(text)
 
     def refuse_entity(*_: object) -> None:
-        raise MalformedDrawing("The drawing declares XML entities, which are not expanded here; save it without them.")
+        raise MalformedDrawing(compose("outlines-xml-entities"))
 
     parser.StartElementHandler = start_element
     parser.EndElementHandler = finish_element
@@ -76,9 +77,9 @@ def parse_xml(content: bytes) -> Node:
         parser.Parse(content, True)
     except expat.ExpatError as error:
         # The message is the parser's own, "mismatched tag: line 3, column 5"; it holds nothing of the drawing.
-        raise MalformedDrawing(f"The drawing is not well-formed XML: {error}.") from None
+        raise MalformedDrawing(compose("outlines-malformed-xml", reason=str(error))) from None
     except (ValueError, LookupError) as error:
         if isinstance(error, (MalformedDrawing, UnsuitableDrawing)):
             raise
-        raise MalformedDrawing("The drawing has an encoding that is not known here; save it as UTF-8.") from None
+        raise MalformedDrawing(compose("outlines-unknown-encoding")) from None
     return roots[0]

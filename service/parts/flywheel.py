@@ -11,6 +11,7 @@ import cmath
 import math
 from dataclasses import dataclass
 
+from kinematics.message import compose
 from service.parts.assembly.colours import LINK_COLOURS
 from service.parts.assembly.keys import find_key, make_bore
 from service.parts.assembly.model import Assembly, Carrier, Part
@@ -70,13 +71,14 @@ def make_flywheel_parts(design: FlywheelDesign, problem: FlywheelProblem, query:
     """
     sizing = GearSizing(query, problem.length_unit)
     wheel = design.mechanism
-    sizing.check_size(2.0 * wheel.radius * sizing.factor, "flywheel")
+    sizing.check_size(2.0 * wheel.radius * sizing.factor, "parts-flywheel-too-large")
     outer, inner, thick = (sizing.factor * length for length in (wheel.radius, wheel.inner_radius, wheel.thickness))
-    density = f"{wheel.density:.6g} kg/m³" if problem.units == "si" else f"density {wheel.density:.6g}"
+    si = problem.units == "si"
+    density = compose("parts-density-in-si" if si else "parts-density", density=f"{wheel.density:.6g}")
     # Mass unit of the answer: problem.scale is the length unit in that of the density.
     to_cubic_millimetre = (problem.scale / sizing.unit) ** 3
     made = _Wheel(outer, inner, thick, _choose_sizes(outer, inner, sizing), wheel.density * to_cubic_millimetre)
-    return made.build_assembly(sizing, density, "kg" if problem.units == "si" else "units of mass")
+    return made.build_assembly(sizing, density, "kg" if si else compose("parts-units-of-mass"))
 
 
 def _choose_sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
@@ -89,15 +91,25 @@ def _choose_sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
     bore = choose_pin(min(most, MAX_PIN)) if query.bore is None else query.bore * unit
     if not MIN_PIN <= bore <= MAX_PIN:
         raise NotMade(
-            f"Shafts of {bore / unit:.6g} {sizing.words} are not available; use {MIN_PIN / unit:g} to "
-            f"{MAX_PIN / unit:g} {sizing.words}.", sizing.path,
-        )  # fmt: skip
+            compose(
+                "parts-shaft-not-available",
+                bore=f"{bore / unit:.6g}",
+                unit=sizing.words,
+                smallest=f"{MIN_PIN / unit:g}",
+                largest=f"{MAX_PIN / unit:g}",
+            ),
+            sizing.path,
+        )
     if HUB_RADIUS * bore > room:
-        where = "within the rim" if inner else "in the disc"
         raise NotMade(
-            f"A bore of {bore / unit:.6g} {sizing.words} leaves no space for a hub {where}; use at most "
-            f"{round_down(room / HUB_RADIUS / unit):g} {sizing.words}.", "/query/bore",
-        )  # fmt: skip
+            compose(
+                "parts-no-hub-within-rim" if inner else "parts-no-hub-in-disc",
+                bore=f"{bore / unit:.6g}",
+                unit=sizing.words,
+                largest=f"{round_down(room / HUB_RADIUS / unit):g}",
+            ),
+            "/query/bore",
+        )
     usual = min(
         max(DEFAULT_CLEARANCES[query.process], 2.0 * MIN_CLEARANCE_PER_PIN * bore), 0.5 * MAX_CLEARANCE_PER_PIN * bore
     )
@@ -127,10 +139,18 @@ class _Wheel:
         region = Region(Disc(0j, self.outer), (bore, *windows))
         body = Prism(region, levels[1].low, levels[1].high)
         wheel = Part(
-            "flywheel", "flywheel", "wheel", ON_SHAFT, (body,), 1.0 + 0.0j, (1, 1), density, LINK_COLOURS[0],
+            "flywheel",
+            compose("parts-flywheel"),
+            "wheel",
+            ON_SHAFT,
+            (body,),
+            1.0 + 0.0j,
+            (1, 1),
+            density,
+            LINK_COLOURS[0],
             mass=self.density * body.volume,
-        )  # fmt: skip
-        shaft = Shaft("flywheel shaft", ON_SHAFT, 0j, (0, 2), keyed=(1,), ends=True)
+        )
+        shaft = Shaft(compose("parts-flywheel-shaft"), ON_SHAFT, 0j, (0, 2), keyed=(1,), ends=True)
         housing = Housing(sizes, levels, (shaft,), ((0j, self.outer),))
         motion = TrainMotion({ON_SHAFT.link: BodyRotation(0j, 1.0)}, 2.0 * self.outer)
         parts = (wheel, *housing.make_parts())
@@ -163,13 +183,16 @@ class _Wheel:
             # The bore is treated as a disc of the shaft's radius.
             share = 0.5 * lost * (0.5 * self.sizes.pin) ** 2 / (0.5 * stated * self.outer**2)
             return (
-                f"The answer's disc of {stated:.6g} {mass_unit} is solid: bore and keyway remove {lost:.4g} "
-                f"{mass_unit} "
-                f"of it and {share:.2g} of its moment of inertia; the shaft and the key that fill them rotate with it.",
+                compose(
+                    "parts-flywheel-disc-difference",
+                    mass=f"{stated:.6g}",
+                    unit=mass_unit,
+                    removed=f"{lost:.4g}",
+                    share=f"{share:.2g}",
+                ),
             )
         more = wheel.mass - stated
-        arms = f"hub and {ARM_COUNT} arms" if windows else "plate within it"
-        return (
-            f"The rim alone has the answer's mass, {stated:.6g} {mass_unit}, and its moment of inertia; the "
-            f"{arms} add {more:.4g} {mass_unit}, so that the speed varies less than permitted.",
-        )
+        values = {"mass": f"{stated:.6g}", "more": f"{more:.4g}", "unit": mass_unit}
+        if windows:
+            return (compose("parts-arms-add-mass", **values, count=ARM_COUNT),)
+        return (compose("parts-plate-adds-mass", **values),)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from kinematics.message import compose
 from service.parts.assembly.sizes import NotMade, PartsQuery
 from synthesis.model.design_interface import AnyDesign
 from synthesis.model.problem import ProblemBase
@@ -131,14 +132,8 @@ MAKERS: dict[str, Maker] = {
 """Makers by type of mechanism."""
 
 
-UNAVAILABLE_TYPES = {
-    "rotor": "a rotor's answer contains masses, radii and angles to correct a rotor with, but no shape of it; use "
-    "`designs/{n}.csv` or `.dxf`, which contain these, to correct the existing rotor",
-    "engine": "an engine's answer contains crank angles, a firing order and balancing masses, but no diameter or "
-    "width of a bore, journal or web; use `designs/{n}.csv` or `.dxf`, which contain these, or request the parts of "
-    "one cylinder as a slider-crank of `kind` `motion`",
-}
-"""Types of mechanism without parts, with the reason and an alternative."""
+UNAVAILABLE_TYPES = {"rotor": "parts-rotor-without-shape", "engine": "parts-engine-without-widths"}
+"""Types of mechanism without parts, and the messages with the reason and an alternative."""
 
 
 def make_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> Assembly:
@@ -159,11 +154,11 @@ def make_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> As
     mechanism = design.mechanism
     maker = _get_maker(hasattr(mechanism, "skeleton"), mechanism.type)
     if maker is None:
-        raise NotMade(f"Parts of this type of mechanism are not available: {UNAVAILABLE_TYPES[mechanism.type]}.")
+        raise NotMade(compose("parts-not-available", reason=compose(UNAVAILABLE_TYPES[mechanism.type])))
     for field in PartsQuery.model_fields:
         # Defaults are not errors: only fields that the client set count.
         if field in query.model_fields_set and getattr(query, field) is not None and field not in maker.fields:
-            raise NotMade(f"Parts of this type of mechanism have no `{field}`; leave it out.", f"/query/{field}")
+            raise NotMade(compose("parts-field-without-meaning", field=field), f"/query/{field}")
     return maker.load()(design, problem, query)
 
 

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from service.simulation.query import NotSimulated, SimulationQuery, check_nonzero, refuse_unused
 from synthesis.analyses.linkages.cycle import find_cycle
 from synthesis.model.design_interface import AnyDesign
@@ -42,7 +43,8 @@ def get_dynamics(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) 
         try:
             return DynamicsBlock.model_validate(own)
         except ValidationError as error:
-            raise NotSimulated(f"The design's `dynamics` is invalid: {error.errors()[0]['msg']}.") from None
+            reason = error.errors()[0]["msg"].removeprefix("Value error, ")
+            raise NotSimulated(compose("simulation-design-dynamics-invalid", reason=reason)) from None
     dynamics = getattr(problem, "dynamics", None)
     return None if dynamics is None else apply_link_shape(dynamics, mechanism.links)
 
@@ -58,9 +60,10 @@ def plan_motion(
         If the design has no motion, or the query gives a speed that does not fit its input.
     """
     slides = mechanism.has_slide_input
-    refuse_unused(
-        query, "an input that slides" if slides else "an input that turns", "speed_rpm" if slides else "speed"
-    )
+    if slides:
+        refuse_unused(query, "simulation-unused-with-sliding-input", "speed_rpm")
+    else:
+        refuse_unused(query, "simulation-unused-with-turning-input", "speed")
     low, high = _find_ends(problem, design, mechanism)
     speed = check_nonzero(query.speed if slides else query.speed_rpm, "speed" if slides else "speed_rpm")
     if speed is None:
@@ -97,9 +100,9 @@ def _find_ends(problem: ProblemBase, design: AnyDesign, mechanism: Mechanism) ->
         if None in ends:
             return find_cycle(mechanism)
     if ends is None:
-        raise NotSimulated("This design was not verified over a motion, so there is nothing to simulate.")
+        raise NotSimulated(compose("simulation-not-verified-over-motion"))
     low, high = (float(end) if slides else math.radians(float(end)) for end in ends)
     # A single position has no motion to compare with.
     if low == high:
-        raise NotSimulated("The input of this design does not move in its verified motion.")
+        raise NotSimulated(compose("simulation-input-at-rest"))
     return low, high

@@ -11,6 +11,7 @@ import numpy as np
 
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose
 from service.simulation.course import DEFAULT_RPM, get_dynamics, plan_motion
 from service.simulation.linkage import build_linkage
 from service.simulation.mjcf import write_mjcf
@@ -70,7 +71,7 @@ def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: For
     machine = _build_unscaled(design, problem, title, form, query)
     # The other formats have no such limit.
     if form in ("mjcf", "sim.py") and _estimate_max_coordinate(machine) > MAX_COORDINATE:
-        raise NotSimulated("Coordinates of this design, or their rates, exceed 1e9, the limit for MuJoCo.")
+        raise NotSimulated(compose("simulation-coordinates-too-large"))
     # MuJoCo's limits are absolute, so very small designs need a larger build.
     lightest = _find_min_mass(machine)
     if lightest >= MIN_MASS:
@@ -82,10 +83,10 @@ def build_machine(design: AnyDesign, problem: ProblemBase, title: str, form: For
         with contextlib.suppress(NotSimulated):
             machine = _build_unscaled(design, problem, title, form, query.model_copy(update={"scale": larger}))
             if _find_min_mass(machine) >= MIN_MASS:
-                remark = f"Built {larger:g} times larger than the design: its bodies would be too light for MuJoCo."
+                remark = compose("simulation-built-larger", factor=f"{larger:g}")
                 return replace(machine, remarks=(*machine.remarks, remark))
     raise NotSimulated(
-        f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {MIN_MASS:g}.",
+        compose("simulation-bodies-too-light", lightest=f"{lightest:.2g}", least=f"{MIN_MASS:g}"),
         "" if query.scale is None else SCALE_PATH,
     )
 
@@ -101,7 +102,7 @@ def open_in_pmks(design: AnyDesign, problem: ProblemBase) -> PmksModel:
 def _rebuild_mechanism(design: AnyDesign) -> Mechanism:
     mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
     if mechanism is None:
-        raise NotSimulated("The dimensions of this design do not assemble to a mechanism.")
+        raise NotSimulated(compose("simulation-does-not-assemble"))
     return mechanism
 
 
@@ -129,19 +130,16 @@ def _build_unscaled(
     try:
         return _build_linkage(design, problem, title, form, query)
     except (MechanismError, StatedMechanismError) as error:
-        raise NotSimulated(f"This design cannot be driven: {error}.") from None
+        raise NotSimulated(compose("simulation-cannot-be-driven", reason=str(error))) from None
 
 
 def _build_linkage(
     design: AnyDesign, problem: ProblemBase, title: str, form: Form, query: SimulationQuery
 ) -> Multibody:
-    refuse_unused(query, "a linkage", "gear")
+    refuse_unused(query, "simulation-unused-with-linkage", "gear")
     mechanism = _rebuild_mechanism(design)
     if form == "mo" and mechanism.redundant:
-        raise NotSimulated(
-            "The constraints of this design are redundant: Modelica's equations would be singular. "
-            "Use .mjcf with MuJoCo instead."
-        )
+        raise NotSimulated(compose("simulation-redundant-constraints"))
     inputs, speed = plan_motion(problem, design, mechanism, query)
     block = get_dynamics(problem, design, mechanism)
     weights = compute_weights(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)

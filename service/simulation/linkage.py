@@ -21,6 +21,7 @@ from kinematics.dynamics.bodies import join_bodies
 from kinematics.dynamics.bodies import make_body as weight
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.message import compose, join_messages
 from service.simulation.model import GROUND, Body, Closure, Multibody, Relation, Vector, ensure_masses
 from service.simulation.naming import Names
 from service.simulation.query import NotSimulated
@@ -76,7 +77,7 @@ def build_linkage(
     # Order 1: the joint rates at the start are needed, too.
     driven = drive(mechanism, inputs, speed=speed, order=1)
     if not driven.smooth.all():
-        raise NotSimulated("The design cannot be driven through its whole motion: it contains a toggle.")
+        raise NotSimulated(compose("simulation-passes-toggle"))
     return _Tree(mechanism, driven, scale).build_machine(inputs, speed, weights, title)
 
 
@@ -92,7 +93,7 @@ class _Tree:
             self._links[link] = name
             self._nodes[name] = _Node(name, link, joints)
         for number, slide in enumerate(mechanism.slides):
-            label = f"block at {slide.joint}"
+            label = compose("simulation-block", joint=slide.joint)
             name = names.make_name("block", mechanism.slide_names[number])
             self._nodes[name] = _Node(name, label, (slide.joint,), slide=number)
         # Pins are a separate kind of element in all formats.
@@ -106,15 +107,15 @@ class _Tree:
         self._grow()
         self._load(weights)
         if not any(float(part.mass) > 0.0 for node in self._nodes.values() for part in node.weights):
-            raise NotSimulated("No moving link has mass.")
+            raise NotSimulated(compose("simulation-no-mass"))
         # Size in metres; it scales the minimum inertias.
         size = self._scale * float(mechanism.frame[1])
         bodies, given = ensure_masses(
             tuple(self._make_body(self._nodes[name], weights.width) for name in self._order), size
         )
         if given:
-            listed = ", ".join(given)
-            remarks = (*remarks, f"Bodies without mass or inertia, given a millionth of the heaviest one's: {listed}.")
+            listed = join_messages(given, ", ")
+            remarks = (*remarks, compose("simulation-negligible-masses", bodies=listed))
         led = self._find_input_body()
         coordinates = {name: self._compute_coordinate(self._nodes[name]) for name in self._order}
         led_speed = float(coordinates[led][1][0])

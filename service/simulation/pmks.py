@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Slide
+from kinematics.message import compose
 from service.simulation.query import NotSimulated
 
 BASE_URL = "https://app.pmksplus.com/?"
@@ -68,7 +69,7 @@ def write_pmks(mechanism: Mechanism, rpm: float) -> PmksModel:
         If the mechanism has gears, more joints than there are letters, or links with equal names.
     """
     if mechanism.gears:
-        raise NotSimulated("PMKS+ does not support gears.")
+        raise NotSimulated(compose("simulation-pmks-without-gears"))
     return _Writer(mechanism).write_model(rpm)
 
 
@@ -125,7 +126,7 @@ class _Writer:
             self._add_link("P", (pin, slot), None)
         # PMKS+ names a link by the letters of its joints, so two links with the same joints would collide.
         if len({link.split(",")[0][2:] for link in self._links}) < len(self._links):
-            raise NotSimulated("Two links of this design have the same joints; PMKS+ names links by them.")
+            raise NotSimulated(compose("simulation-pmks-equal-joints"))
         # Whole speeds from 1 to 1000 rev/min; the direction is one of the settings.
         speed = min(max(round(abs(rpm)), 1), 1000)
         settings = format_integer(SETTING_FLAGS + CLOCKWISE_FLAG * (rpm < 0.0)).rjust(2, "0")
@@ -138,9 +139,7 @@ class _Writer:
     def _take_letter(letters: Iterator[str]) -> str:
         for letter in letters:
             return letter
-        raise NotSimulated(
-            f"This design has more than {len(JOINT_LETTERS)} joints; PMKS+ names joints by single letters."
-        )
+        raise NotSimulated(compose("simulation-pmks-too-many-joints", limit=len(JOINT_LETTERS)))
 
     def _format_point(self, place: complex) -> str:
         moved = self._scale * (place - self._origin)

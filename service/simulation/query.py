@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from kinematics.message import compose
 from synthesis.model.dynamics.bodies import Material
 
 Form = Literal["mjcf", "urdf", "mo", "sim.py"]
@@ -81,8 +82,8 @@ class NoSimulation(LookupError):
     """A type of mechanism for which no simulation exists."""
 
 
-def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
-    """Refuse fields of a query that have no meaning for a mechanism.
+def refuse_unused(query: SimulationQuery, message_id: str, *fields: str) -> None:
+    """Refuse fields of a query that have no meaning for a mechanism, with a message.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def refuse_unused(query: SimulationQuery, of: str, *fields: str) -> None:
     """
     for field in fields:
         if getattr(query, field) is not None:
-            raise NotSimulated(f"This has no meaning for {of}; leave it out.", f"/query/{field}")
+            raise NotSimulated(compose(message_id), f"/query/{field}")
 
 
 def check_nonzero(value: float | None, field: str) -> float | None:
@@ -103,5 +104,5 @@ def check_nonzero(value: float | None, field: str) -> float | None:
         If the speed is 0, or its magnitude is below the minimum.
     """
     if value is not None and abs(value) < MIN_VALUE:
-        raise NotSimulated(f"A simulation needs a speed of at least {MIN_VALUE:g} in size.", f"/query/{field}")
+        raise NotSimulated(compose("simulation-speed-too-small", least=f"{MIN_VALUE:g}"), f"/query/{field}")
     return value

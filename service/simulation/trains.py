@@ -17,6 +17,7 @@ import numpy as np
 from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import Mesh
 from kinematics.gear.teeth import Gear
+from kinematics.message import compose, join_messages
 from service.render.gears.gearbox_layout import arrange_gearbox, arrange_layshaft
 from service.render.gears.planetary_layout import place_planetary_gears
 from service.render.gears.train_layout import place_gears
@@ -130,9 +131,9 @@ class _Train:
 
     def build_machine(self, title: str, driven: str, query: SimulationQuery, remarks: Iterable[str] = ()) -> Multibody:
         """Return the machine over one turn of its driven shaft."""
-        refuse_unused(query, "gears", "width", "speed")
+        refuse_unused(query, "simulation-unused-with-gears", "width", "speed")
         if driven not in self.shafts:
-            raise NotSimulated("The input of this train is fixed, so there is no motion to simulate.")
+            raise NotSimulated(compose("simulation-train-input-fixed"))
         speed = check_nonzero(query.speed_rpm, "speed_rpm") or DEFAULT_RPM
         rate = speed * math.tau / 60.0
         names = Names()
@@ -145,14 +146,12 @@ class _Train:
         share = self.shafts[driven].speed
         rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
         notes = [
-            f"Gears are {self.material} discs ({DENSITIES[self.material]:g} kg/m3) of their pitch diameters.",
+            compose("simulation-gears-as-discs", material=self.material, density=f"{DENSITIES[self.material]:g}"),
             *remarks,
-            "There is no gravity.",
+            compose("simulation-no-gravity"),
         ]
         if given:
-            notes.append(
-                f"Bodies without mass or inertia, given a millionth of the heaviest one's: {', '.join(given)}."
-            )
+            notes.append(compose("simulation-negligible-masses", bodies=join_messages(given, ", ")))
         return Multibody(
             title=title,
             bodies=bodies,
@@ -197,7 +196,7 @@ def build_gear_train(
     design: GearTrainDesign, problem: GearTrainProblem, title: str, query: SimulationQuery
 ) -> Multibody:
     """Build the machine of an ordinary train."""
-    refuse_unused(query, "a gear train", "gear")
+    refuse_unused(query, "simulation-unused-with-gear-train", "gear")
     train = _Train(problem.length_unit, query)
     first, _, remarks = _add_ordinary(train, design.mechanism, problem.reverted, "", 1.0, None)
     return train.build_machine(title, first, query, remarks)
@@ -227,7 +226,7 @@ def _add_ordinary(
             train.add_mesh((label, float(gear.count)), (at, -float(stage.sense) * gears[n - 1].count))
             at = label
     crossed = not all(stage.is_parallel for stage in built.stages)
-    remarks = ["Non-parallel shafts are placed side by side, as in the drawing."] if crossed else []
+    remarks = [compose("simulation-shafts-side-by-side")] if crossed else []
     return first, at, remarks
 
 
@@ -235,7 +234,7 @@ def build_planetary_train(
     design: PlanetaryDesign, problem: PlanetaryProblem, title: str, query: SimulationQuery
 ) -> Multibody:
     """Build the machine of a planetary train."""
-    refuse_unused(query, "a gear train", "gear")
+    refuse_unused(query, "simulation-unused-with-gear-train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism = design.mechanism
     bodies = _add_planetary(train, mechanism, design.metrics, "", 1.0, 0j, {})
@@ -253,7 +252,7 @@ def _add_planetary(
     arrangement, speeds = ARRANGEMENTS[mechanism.arrangement], metrics.speeds
     placed = place_planetary_gears(mechanism)
     if not placed:
-        raise NotSimulated("The gears of this train do not fit together, so they have no positions.")
+        raise NotSimulated(compose("simulation-gears-do-not-fit"))
     # The fixed member is the ground; members joined to another train are its shafts.
     bodies = {mechanism.fixed: GROUND, **joined}
     for member in arrangement.members:
@@ -307,7 +306,7 @@ def build_train_series(
     design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str, query: SimulationQuery
 ) -> Multibody:
     """Build the machine of trains in series: the output of each is the input of the next, about one axis."""
-    refuse_unused(query, "a gear train", "gear")
+    refuse_unused(query, "simulation-unused-with-gear-train", "gear")
     train = _Train(problem.length_unit, query)
     mechanism, metrics = design.mechanism, design.metrics
     remarks: list[str] = []
@@ -351,7 +350,10 @@ def build_gearbox(design: GearboxDesign, problem: GearboxProblem, title: str, qu
     if query.speed_rpm is None:
         query = query.model_copy(update={"speed_rpm": mechanism.input_speed})
     return train.build_machine(
-        title, "input", query, [f"Speed {engaged_speed} of {len(design.metrics.speeds)} is engaged."]
+        title,
+        "input",
+        query,
+        [compose("simulation-speed-engaged", number=engaged_speed, count=len(design.metrics.speeds))],
     )
 
 
@@ -393,7 +395,7 @@ def build_layshaft_gearbox(
     else:
         train.add_mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))
     name = "reverse" if pair is None else f"gear {number}"
-    remarks = [f"Engaged: {name}. The gears that run free on the main shaft count as parts of it."]
+    remarks = [compose("simulation-gear-engaged", gear=name)]
     return train.build_machine(title, "input", query, remarks)
 
 
@@ -401,7 +403,7 @@ def _get_engaged_number(query: SimulationQuery, count: int) -> int:
     # Without a choice the first gear is engaged.
     number = 1 if query.gear is None else query.gear
     if number > count:
-        raise NotSimulated(f"This gearbox has the gears 1 to {count}.", "/query/gear")
+        raise NotSimulated(compose("simulation-gear-out-of-range", count=count), "/query/gear")
     return number
 
 

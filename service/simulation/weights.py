@@ -9,6 +9,7 @@ from typing import NamedTuple
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose
 from service.simulation.query import NotSimulated, SimulationQuery
 from synthesis.mechanisms.link_bodies import BlockError
 from synthesis.mechanisms.machine import build_machine, find_weight_errors
@@ -63,33 +64,30 @@ def compute_weights(
     scale = METRES_PER_UNIT[unit] * query.built
     width, thickness = _get_sizes(mechanism, layout, METRES_PER_UNIT[unit], query)
     if block is not None and block.units != "si":
-        raise NotSimulated(
-            "The problem's `dynamics` has its own units, but simulations are in SI units; give it with `units: si`."
-        )
+        raise NotSimulated(compose("simulation-dynamics-not-in-si"))
     remarks: list[str] = []
     gravity, pins = 0j, {}
     if block is not None:
         faults = find_weight_errors(block, mechanism)
         # Report only the first contradiction.
         if faults:
-            raise NotSimulated(f"The problem's `dynamics` does not fit this design: {faults[0][0]}: {faults[0][1]}.")
+            place, reason = faults[0]
+            raise NotSimulated(compose("simulation-dynamics-field-does-not-fit", place=place, reason=reason))
         try:
             machine, _ = build_machine(block, mechanism, unit)
         except BlockError as error:
-            raise NotSimulated(f"The problem's `dynamics` does not fit this design: {error}.") from None
+            raise NotSimulated(compose("simulation-dynamics-does-not-fit", reason=str(error))) from None
         gravity = machine.gravity
         pins = {joint: float(mass) for joint, mass in machine.pin_masses.items()}
         # These blocks have no counterpart in the exported formats.
         left = [name for name in ("loads", "springs", "friction") if getattr(block, name)]
         if left:
-            remarks.append(f"Not included: {', '.join(left)} of the problem's dynamics.")
+            remarks.append(compose("simulation-dynamics-not-included", fields=", ".join(left)))
         # With masses in the problem, plates would count twice; only the masses are used then.
         if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
             if query.built != 1.0:
-                raise NotSimulated(
-                    "The problem's `dynamics` gives the masses of the links: leave out `scale`.", SCALE_PATH
-                )
-            remarks.append("Masses and gravity are those of the problem's dynamics.")
+                raise NotSimulated(compose("simulation-scale-with-masses"), SCALE_PATH)
+            remarks.append(compose("simulation-masses-of-problem"))
             return Weights(machine.bodies, pins, (0.0, 0.0), gravity, width, tuple(remarks))
     material: Material = query.material or "steel"
     density = DENSITIES[material]
@@ -104,10 +102,15 @@ def compute_weights(
     half = 0.5 * (BLOCK_LENGTH_SHARE - BLOCK_WIDTH_SHARE) * width
     made = shapes.make_widened_hull([complex(-half), complex(half)], BLOCK_WIDTH_SHARE * width).body(density, thickness)
     remarks.append(
-        f"Links are {material} plates ({density:g} kg/m3), {width:.6g} m wide with round ends and {thickness:.6g} "
-        "m thick; their holes are filled by pins."
+        compose(
+            "simulation-links-as-plates",
+            material=material,
+            density=f"{density:g}",
+            width=f"{width:.6g}",
+            thickness=f"{thickness:.6g}",
+        )
     )
-    remarks.append("Gravity is that of the problem's dynamics." if block is not None else "There is no gravity.")
+    remarks.append(compose("simulation-gravity-of-problem" if block is not None else "simulation-no-gravity"))
     return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, width, tuple(remarks))
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from kinematics.message import compose
+from service.parts.assembly.descriptions import name_material
 from service.parts.assembly.model import Carrier, Part, Sort
 from service.parts.assembly.sizes import Process, Sizes
 from service.parts.assembly.standard_parts import find_washer, name_bar
@@ -88,7 +90,7 @@ def make_pin(
     low, high = ends
     seats, stub, upside_down = shape
     shank, top = 0.5 * sizes.pin, high + sizes.play
-    steel = MATERIALS[sizes.process][1]
+    steel = name_material(MATERIALS[sizes.process][1])
     mirror = low + high if upside_down else None
 
     def make_prisms(stack: Stack, cut: Sequence[Prism] = ()) -> tuple[Prism, ...]:
@@ -107,7 +109,7 @@ def make_pin(
         cap = [(head, shank, top, top + sizes.cap)]
         return [
             make_round_part("pin", described, make_prisms(stack, seats), PIN_COLOUR),
-            make_round_part(called, f"cap of {described}, pressed or glued on", make_prisms(cap), FASTENER_COLOUR),
+            make_round_part(called, compose("parts-pin-cap", pin=described), make_prisms(cap), FASTENER_COLOUR),
         ]
     retaining = sizes.ring
     groove, bottom = 0.5 * retaining.groove, low - retaining.width
@@ -120,7 +122,7 @@ def make_pin(
     ]
     below = [(0.5 * retaining.diameter, groove, low - retaining.thickness, low)]
     above = [(0.5 * retaining.diameter, groove, top, top + retaining.thickness)]
-    what = f"retaining ring of {described}"
+    what = compose("parts-retaining-ring", pin=described)
     sides = ("ring_below", above if upside_down else below), ("ring_above", below if upside_down else above)
     rings = [
         make_round_part(side, what, make_prisms(ring), FASTENER_COLOUR, retaining.standard) for side, ring in sides
@@ -157,8 +159,17 @@ def make_fillers(
         sort: Sort = "washer" if standard else "spacer"
         parts.append(
             Part(
-                called, "washer" if standard else "spacer", sort, carrier, (Prism(region, low, high),), 1.0 + 0.0j,
-                planes, MATERIALS[sizes.process][1], FASTENER_COLOUR, standard, round=True,
+                called,
+                compose("parts-washer") if standard else compose("parts-spacer"),
+                sort,
+                carrier,
+                (Prism(region, low, high),),
+                1.0 + 0.0j,
+                planes,
+                name_material(MATERIALS[sizes.process][1]),
+                FASTENER_COLOUR,
+                standard,
+                round=True,
             )
-        )  # fmt: skip
+        )
     return parts

@@ -11,6 +11,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from kinematics.message import compose, join_messages
+from service.parts.assembly.descriptions import name_part
 from service.parts.assembly.interference import find_overlaps, find_thin_walls
 from service.parts.assembly.model import Assembly
 from service.parts.assembly.sizes import (
@@ -36,6 +38,10 @@ from service.parts.assembly.standard_parts import PIN_DIAMETERS
 
 MAX_FACTOR, BISECTION_STEPS = 2.0**16, 7
 """Maximum trial scale, and number of bisection steps that refine the minimum scale."""
+
+NARROW_FOR_PINS, NARROW_FOR_RUNNER = "parts-links-narrow-for-pins", "parts-links-narrow-for-runner"
+NARROW_FOR_BLOCKS, NARROW_FOR_SHAFTS = "parts-links-narrow-for-blocks", "parts-links-narrow-for-shafts"
+"""Messages that links are too narrow for their widest opening."""
 
 
 class Trial(NamedTuple):
@@ -67,8 +73,12 @@ class Fitting(ABC):
         largest, most = size * unit * query.scale, MAX_ASSEMBLY_SIZE / (size * unit)
         if largest > MAX_ASSEMBLY_SIZE:
             raise NotMade(
-                f"The mechanism is {largest / 1000.0:.4g} m large at this scale, but parts are made up to "
-                f"{MAX_ASSEMBLY_SIZE / 1000.0:g} m; use at most scale {round_down(most):g}.",
+                compose(
+                    "parts-mechanism-too-large",
+                    size=f"{largest / 1000.0:.4g}",
+                    largest=f"{MAX_ASSEMBLY_SIZE / 1000.0:g}",
+                    scale=f"{round_down(most):g}",
+                ),
                 "/query/scale",
             )
 
@@ -100,8 +110,8 @@ class Fitting(ABC):
         """Thickest default pin that is tried, in units of the design."""
 
     def find_opening(self, sizes: Sizes) -> tuple[float, str]:
-        """Return the widest opening in the links, and its purpose."""
-        return sizes.hole, "pins"
+        """Return the widest opening in the links, and the id of the message that links are too narrow for it."""
+        return sizes.hole, NARROW_FOR_PINS
 
     def list_problem_sizes(self) -> Iterator[Sizes]:
         """Yield the sizes that the problem contains."""
@@ -122,12 +132,18 @@ class Fitting(ABC):
             path = "/query/pin"
         if not MIN_PIN <= pin <= MAX_PIN:
             raise NotMade(
-                f"Pins of {pin / unit:.6g} {self._words} are not available; use {MIN_PIN / unit:g} to "
-                f"{MAX_PIN / unit:g} {self._words}.", path,
-            )  # fmt: skip
+                compose(
+                    "parts-pin-not-available",
+                    pin=f"{pin / unit:.6g}",
+                    unit=self._words,
+                    smallest=f"{MIN_PIN / unit:g}",
+                    largest=f"{MAX_PIN / unit:g}",
+                ),
+                path,
+            )
         if width is not None and width > MAX_ASSEMBLY_SIZE:
             raise NotMade(
-                f"Links must be narrower than {MAX_ASSEMBLY_SIZE / unit:g} {self._words}, the maximum size of parts.",
+                compose("parts-links-too-wide", largest=f"{MAX_ASSEMBLY_SIZE / unit:g}", unit=self._words),
                 "/query/width",
             )
         sizes = self._with(WIDTH_PER_PIN * pin if width is None else width, pin)
@@ -152,13 +168,12 @@ class Fitting(ABC):
         """Refuse sizes that contradict one another for any mechanism."""
         unit, words = self._unit, self._words
         check_sizes(sizes, unit)
-        hole, what = self.find_opening(sizes)
+        hole, message_id = self.find_opening(sizes)
         # One wall on each side of the hole.
         least = hole + 2.0 * MIN_WALL_PER_PIN * sizes.pin
         if sizes.width < least * (1.0 - 1e-9):
             raise NotMade(
-                f"Links with {what} of {sizes.pin / unit:.6g} {words} must be at least {round_up(least / unit):g} "
-                f"{words} wide, which leaves a wall of a quarter of the pin.",
+                compose(message_id, pin=f"{sizes.pin / unit:.6g}", unit=words, width=f"{round_up(least / unit):g}"),
                 "/query/pin" if self._query.width is None else "/query/width",
             )
 
@@ -201,22 +216,25 @@ class Fitting(ABC):
         """
         scale, unit = self._query.scale, self._unit
         path = path or ("/query/pin" if self._query.width is None else "/query/width")
-        known = f"Links {sizes.width / unit:.4g} {self._words} wide do not fit: {reason}."
+        known = compose("parts-links-do-not-fit", width=f"{sizes.width / unit:.4g}", unit=self._words, reason=reason)
         least = self._find_min_scale(sizes, scale)
         if least is None:
             largest = round_down(MAX_ASSEMBLY_SIZE / (self._size * unit))
             if self.try_sizes(self._with(WIDTH_PER_PIN * MIN_PIN, MIN_PIN), largest).assembly is not None:
-                words = f"{known} Narrower links fit, but these fit at no permitted scale (up to {largest:g})."
-                return NotMade(words, path)
-            return NotMade(f"{known} Narrower links do not fit either: the mechanism cannot be built in planes.")
-        words = f"{known} These sizes fit at scale {least:.4g} or more"
+                return NotMade(join_messages([known, compose("parts-only-narrower-fit", scale=f"{largest:g}")]), path)
+            return NotMade(join_messages([known, compose("parts-no-links-fit")]))
         widest, thinner = sizes.width * scale / least, sizes.pin * scale / least
         if thinner >= MIN_PIN:
-            words += (
-                f"; at scale {scale:g} a width of {round_down(widest / unit):g} {self._words} fits, with pin, "
-                "thickness and clearance in proportion"
+            remedy = compose(
+                "parts-larger-scale-or-narrower-fits",
+                least=f"{least:.4g}",
+                scale=f"{scale:g}",
+                width=f"{round_down(widest / unit):g}",
+                unit=self._words,
             )
-        return NotMade(f"{words}.", path)
+        else:
+            remedy = compose("parts-larger-scale-fits", least=f"{least:.4g}")
+        return NotMade(join_messages([known, remedy]), path)
 
     def _find_min_scale(self, sizes: Sizes, scale: float) -> float | None:
         """Find the minimum scale, to a few hundredths, at which these sizes fit."""
@@ -252,16 +270,11 @@ def find_fault(assembly: Assembly, sizes: Sizes, *, across: bool = True) -> str:
     """
     thin = find_thin_walls(assembly, 0.99 * MIN_WALL_PER_PIN * sizes.pin)
     if thin:
-        return f"{name_part(thin[0].part)} has too thin walls around its holes"
+        return compose("parts-walls-too-thin", part=name_part(thin[0].part))
     meeting = find_overlaps(assembly, across=across)
     if not meeting:
         return ""
     (one, other), at = (name_part(name) for name in meeting[0].parts), meeting[0].at
     if assembly.motion.input_field == "input_place":
-        return f"{one} and {other} collide at the input's place {at / assembly.unit:.4g}"
-    return f"{one} and {other} collide at an input angle of {math.degrees(at):.1f}°"
-
-
-def name_part(part: str) -> str:
-    """Return the name of a part for use in a sentence."""
-    return "the " + part.replace("_", " ")
+        return compose("parts-collide-at-place", first=one, second=other, place=f"{at / assembly.unit:.4g}")
+    return compose("parts-collide-at-angle", first=one, second=other, angle=f"{math.degrees(at):.1f}")

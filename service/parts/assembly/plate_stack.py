@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from kinematics.message import compose
 from service.parts.assembly.colours import BASE_COLOUR
+from service.parts.assembly.descriptions import describe_identifier, name_material
 from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Carrier, Part, Sort
@@ -58,7 +60,7 @@ class PlateStack:
         along: complex = 1.0 + 0.0j,
     ) -> Part:  # fmt: skip
         """Make a plate in a plane."""
-        material = MATERIALS[self.sizes.process][0]
+        material = name_material(MATERIALS[self.sizes.process][0])
         body = Prism(region, *self.get_level(plane))
         return Part(name, described, sort, carrier, (body,), along, (plane, plane), material, colour)
 
@@ -78,10 +80,10 @@ class PlateStack:
                     bodies.append(Prism(region, high, self.get_level(nearest)[0] - sizes.play))
                 else:
                     bodies.append(Prism(region, self.get_level(nearest)[1] + sizes.play, low))
-        material = MATERIALS[self.sizes.process][0]
+        material = name_material(MATERIALS[self.sizes.process][0])
         return Part(
             name,
-            name.replace("_", " "),
+            describe_identifier(name),
             "base",
             GROUND_CARRIER,
             tuple(bodies),
@@ -114,12 +116,24 @@ class PlateStack:
         seats = [Prism(section, *self.get_level(plane)) for plane in sorted(keyed)]
         shape = PinShape(seats, STUB_LENGTH * sizes.pin if stub else 0.0, stub < 0)
         parts = make_pin(name, described, carrier, place, ends, (min(levels), max(levels)), sizes, shape)
-        steel, seated = MATERIALS[self.sizes.process][1], Region(make_key_section(place, sizes.pin, key))
+        steel, seated = name_material(MATERIALS[self.sizes.process][1]), Region(make_key_section(place, sizes.pin, key))
         for plane in keyed:
             bodies = (Prism(seated, *self.get_level(plane)),)
             designation = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
-            parts.append(Part(f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane), steel,
-                              FASTENER_COLOUR, designation))  # fmt: skip
+            parts.append(
+                Part(
+                    f"key_{name}_{plane}",
+                    compose("parts-key"),
+                    "key",
+                    carrier,
+                    bodies,
+                    1.0 + 0.0j,
+                    (plane, plane),
+                    steel,
+                    FASTENER_COLOUR,
+                    designation,
+                )
+            )
         return parts
 
     def make_fillers(

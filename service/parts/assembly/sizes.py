@@ -8,6 +8,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from kinematics.message import compose
 from service.parts.assembly.standard_parts import (
     PIN_DIAMETERS,
     SHEET_THICKNESSES,
@@ -264,14 +265,26 @@ def check_sizes(sizes: Sizes, unit: float) -> None:
     tight, loose = MIN_CLEARANCE_PER_PIN * sizes.pin, MAX_CLEARANCE_PER_PIN * sizes.pin
     if not tight <= sizes.clearance <= loose:
         raise NotMade(
-            f"The clearance must be from {tight / unit:.4g} to {loose / unit:.4g} {words} for pins of "
-            f"{sizes.pin / unit:.6g} {words}.", "/query/clearance",
-        )  # fmt: skip
+            compose(
+                "parts-clearance-out-of-range",
+                smallest=f"{tight / unit:.4g}",
+                largest=f"{loose / unit:.4g}",
+                unit=words,
+                pin=f"{sizes.pin / unit:.6g}",
+            ),
+            "/query/clearance",
+        )
     if not 0.1 * sizes.pin <= sizes.thickness <= 20.0 * sizes.pin:
         raise NotMade(
-            f"The thickness must be from {0.1 * sizes.pin / unit:.4g} to {20.0 * sizes.pin / unit:.4g} {words} "
-            f"for pins of {sizes.pin / unit:.6g} {words}.", "/query/thickness",
-        )  # fmt: skip
+            compose(
+                "parts-thickness-out-of-range",
+                smallest=f"{0.1 * sizes.pin / unit:.4g}",
+                largest=f"{20.0 * sizes.pin / unit:.4g}",
+                unit=words,
+                pin=f"{sizes.pin / unit:.6g}",
+            ),
+            "/query/thickness",
+        )
 
 
 def round_up(value: float) -> float:

@@ -17,9 +17,11 @@ import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
+from service.parts.assembly.descriptions import describe_name, name_material, name_part
 from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
-from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault, name_part
+from service.parts.assembly.fit_sizes import NARROW_FOR_RUNNER, Fitting, Trial, find_fault
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Assembly, Carrier, Development, Frame, Part, Placement
@@ -111,7 +113,7 @@ class _BarrelFitting(Fitting):
         super().__init__(query, unit, max(2.0 * mechanism.cylinder_radius, lift) + lift)
         # A step larger than the radius between two table angles is a jump, not a steep move.
         if max(abs(jump) for jump in np.diff(mechanism.program.s)) > mechanism.cylinder_radius:
-            raise NotMade("The displacement jumps, but a groove cannot have a step.")
+            raise NotMade(compose("parts-groove-with-step"))
 
     @property
     def max_pin(self) -> float:
@@ -120,17 +122,17 @@ class _BarrelFitting(Fitting):
 
     def find_opening(self, sizes: Sizes) -> tuple[float, str]:
         """Return the widest opening: the base has a slot for the runner."""
-        return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
+        return sizes.block[1] + 2.0 * sizes.clearance, NARROW_FOR_RUNNER
 
     def try_sizes(self, sizes: Sizes, scale: float) -> Trial:
         """Build the assembly in these sizes."""
         builder = _Builder(self._mechanism, sizes, self._unit * scale)
         if not 0.5 * sizes.collar < builder.roller:
-            return Trial(None, "the roller is not wider than the fastener of its pin")
+            return Trial(None, compose("parts-roller-too-narrow"))
         if builder.groove.floor < measure_keyway_reach(sizes) + MIN_WALL_PER_PIN * sizes.pin:
-            return Trial(None, "the groove, as deep as the roller is thick, leaves too thin a wall around the shaft")
+            return Trial(None, compose("parts-groove-leaves-thin-wall"))
         if not builder.groove.is_sound():
-            return Trial(None, "the groove's floor is so close to the axis that the roller would cut away its own wall")
+            return Trial(None, compose("parts-groove-undercut"))
         assembly = builder.build_assembly(scale)
         fault = find_fault(assembly, sizes, across=False)
         return Trial(None, fault) if fault else Trial(assembly, "")
@@ -141,7 +143,7 @@ class _BarrelFitting(Fitting):
         meeting = find_overlaps(made, CHECK_COUNT)
         if meeting:
             one, other = (name_part(part) for part in meeting[0].parts)
-            raise NotMade(f"The parts do not fit: {one} and {other} collide.")
+            raise NotMade(compose("parts-parts-collide", first=one, second=other))
         return made
 
 
@@ -188,9 +190,8 @@ class _Builder:
         motion = BarrelMotion(self._measure_size(), self._displacement, self._sense, frame)
         parts = (*self._make_follower(), *self._make_rotating(), *self._make_fixed())
         notes = (
-            "The groove is milled with a cutter as wide as the roller with its clearance, or printed; the drawing of "
-            "the barrel is its development, seen from outside.",
-            "Glue or press the feet of the uprights into the base.",
+            compose("parts-groove-milling"),
+            compose("parts-glue-uprights"),
         )
         return Assembly(parts, motion, 2, 1, self._factor, scale, notes)
 
@@ -208,17 +209,27 @@ class _Builder:
         plate = Region(widen_hull(pins, 0.5 * sizes.width), tuple(Disc(z, hole) for z in (*pins, place)))
         runner = Region(widen_hull(pins, wide), tuple(Disc(z, hole) for z in pins))
         body = Prism(make_ring(place, self.roller, hole), *stack.get_level(2))
-        material = {"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process]
+        material = name_material({"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process])
         parts = [
-            stack.make_plate("follower", "follower", "link", ON_FOLLOWER, plate, 1, LINK_COLOURS[0]),
-            stack.make_plate("runner", "runner in the guide", "block", ON_FOLLOWER, runner, 0, BLOCK_COLOUR),
-            Part("roller", "roller", "block", ON_FOLLOWER, (body,), 1.0 + 0.0j, (2, 2), material, ROLLER_COLOUR,
-                 round=True),
-            *stack.make_pin("roller", "pin roller", ON_FOLLOWER, place, (1, 2)),
+            stack.make_plate("follower", compose("parts-follower"), "link", ON_FOLLOWER, plate, 1, LINK_COLOURS[0]),
+            stack.make_plate("runner", compose("parts-runner"), "block", ON_FOLLOWER, runner, 0, BLOCK_COLOUR),
+            Part(
+                "roller",
+                compose("parts-roller"),
+                "block",
+                ON_FOLLOWER,
+                (body,),
+                1.0 + 0.0j,
+                (2, 2),
+                material,
+                ROLLER_COLOUR,
+                round=True,
+            ),
+            *stack.make_pin("roller", compose("parts-roller-pin"), ON_FOLLOWER, place, (1, 2)),
             *stack.make_fillers("roller", ON_FOLLOWER, place, [(1, 2)]),
-        ]  # fmt: skip
+        ]
         for n, z in enumerate(pins, 1):
-            parts += stack.make_pin(f"guide_{n}", f"pin guide {n}", ON_FOLLOWER, z, (0, 1))
+            parts += stack.make_pin(f"guide_{n}", compose("parts-guide-pin", number=n), ON_FOLLOWER, z, (0, 1))
             parts += stack.make_fillers(f"guide_{n}", ON_FOLLOWER, z, [(0, 1)])
         return parts
 
@@ -230,19 +241,50 @@ class _Builder:
         # Circumscribed polygon: the meshed bore must not be tighter than the true one.
         bore = make_polygon(make_bore(0j, pin, self._key, sizes.clearance), beyond=True)
         mesh = self.groove.make_barrel(low, high, bore, min(MAX_SAG, SAG_CLEARANCE_SHARE * sizes.clearance))
-        material = MATERIALS["print" if sizes.process == "print" else "mill"][0]
-        barrel = Part("barrel", "barrel with its groove", "cam", ON_BARREL, (mesh,), 1.0 + 0.0j, (2, 2), material,
-                      LINK_COLOURS[1], unrolled=self._make_development())  # fmt: skip
+        material = name_material(MATERIALS["print" if sizes.process == "print" else "mill"][0])
+        barrel = Part(
+            "barrel",
+            compose("parts-grooved-barrel"),
+            "cam",
+            ON_BARREL,
+            (mesh,),
+            1.0 + 0.0j,
+            (2, 2),
+            material,
+            LINK_COLOURS[1],
+            unrolled=self._make_development(),
+        )
         seat = Prism(Region(make_shaft_section(0j, pin, self._key)), low, high)
         ends = self._uprights[0][0], self._uprights[1][1]
         parts = [
             barrel,
-            *make_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, PinShape([seat], STUB_LENGTH * pin)),
+            *make_pin(
+                "cam",
+                compose("parts-camshaft"),
+                ON_BARREL,
+                0j,
+                ends,
+                (2, 2),
+                sizes,
+                PinShape([seat], STUB_LENGTH * pin),
+            ),
         ]
         told = self._key.standard and f"{self._key.standard} x {high - low:.4g}"
         key = (Prism(Region(make_key_section(0j, pin, self._key)), low, high),)
-        parts.append(Part("key_cam", "key", "key", ON_BARREL, key, 1.0 + 0.0j, (2, 2), MATERIALS[sizes.process][1],
-                          FASTENER_COLOUR, told))  # fmt: skip
+        parts.append(
+            Part(
+                "key_cam",
+                compose("parts-key"),
+                "key",
+                ON_BARREL,
+                key,
+                1.0 + 0.0j,
+                (2, 2),
+                name_material(MATERIALS[sizes.process][1]),
+                FASTENER_COLOUR,
+                told,
+            )
+        )
         for n, gap in enumerate(((self._uprights[0][1], low), (high, self._uprights[1][0]))):
             parts += make_fillers("cam", ON_BARREL, 0j, gap, (n, n + 1), sizes)
         return parts
@@ -281,8 +323,8 @@ class _Builder:
         for n, (low, high) in enumerate(self._uprights, 1):
             body = Prism(Region(outline, (Disc(0j, 0.5 * sizes.hole),)), low, high)
             parts.append(
-                Part(f"upright_{n}", f"upright {n}", "base", UPRIGHT, (body,), 1.0 + 0.0j, (0, 2),
-                     MATERIALS[sizes.process][0], BASE_COLOUR, like="upright")
+                Part(f"upright_{n}", describe_name(f"upright {n}"), "base", UPRIGHT, (body,), 1.0 + 0.0j, (0, 2),
+                     name_material(MATERIALS[sizes.process][0]), BASE_COLOUR, like="upright")
             )  # fmt: skip
         away = sizes.collar + sizes.min_gap
         way = [complex(self._least - away), complex(self._most + away)]

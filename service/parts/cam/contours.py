@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
 from kinematics.cam.finished.contact import Contour
+from kinematics.message import compose
 from service.parts.assembly.sizes import NotMade
 from service.parts.geometry.splines import Curve
 
@@ -56,7 +57,7 @@ def fit_outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
     found = contour.evaluate_at(np.arange(len(contour.points))[:, None], share)
     places = np.asarray((factor * found.point + offset * found.normal).ravel())
     if contour.sharpest_turn > MIN_EDGE_ANGLE:
-        raise NotMade("The cam has an edge where the follower's velocity jumps; such a contour cannot be cut.")
+        raise NotMade(compose("parts-cam-with-edge"))
     # Outlines are counter-clockwise by convention.
     if not contour.turns_ccw:
         places = np.roll(places[::-1], 1)
@@ -70,7 +71,7 @@ def fit_outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
             return curve
         # Too inaccurate: double the number of points.
         stride //= 2
-    raise NotMade(f"The cam has a bend that no smooth curve follows within {allowed:.2g} mm.")
+    raise NotMade(compose("parts-cam-bend-too-sharp", deviation=f"{allowed:.2g}"))
 
 
 def measure_deviation(curve: Curve, places: Complex, kept: NDArray[np.int64]) -> float:

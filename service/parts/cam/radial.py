@@ -19,9 +19,11 @@ import numpy as np
 from kinematics.cam.finished.contact import Contour
 from kinematics.cam.follower import Flat, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from kinematics.cam.motion.pieces import Motion as CamState
+from kinematics.message import compose
 from service.parts.assembly.colours import BLOCK_COLOUR, LINK_COLOURS
+from service.parts.assembly.descriptions import describe_identifier, name_material
 from service.parts.assembly.fasteners import MATERIALS
-from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault
+from service.parts.assembly.fit_sizes import NARROW_FOR_PINS, NARROW_FOR_RUNNER, Fitting, Trial, find_fault
 from service.parts.assembly.model import Assembly, Carrier, Part
 from service.parts.assembly.plate_stack import GROUND_CARRIER, PlateStack
 from service.parts.assembly.sizes import MILLIMETRES_PER_UNIT, NotMade, PartsQuery, Sizes
@@ -114,8 +116,8 @@ class _CamFitting(Fitting):
     def find_opening(self, sizes: Sizes) -> tuple[float, str]:
         """Return the widest opening: the base has a slot for the runner of a slide."""
         if isinstance(self._core, TranslatingRoller | TranslatingFlat):
-            return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
-        return sizes.hole, "pins"
+            return sizes.block[1] + 2.0 * sizes.clearance, NARROW_FOR_RUNNER
+        return sizes.hole, NARROW_FOR_PINS
 
     def try_sizes(self, sizes: Sizes, scale: float) -> Trial:
         """Build the assembly in the first arrangement that fits."""
@@ -126,7 +128,11 @@ class _CamFitting(Fitting):
             if not reason:
                 return Trial(assembly, "")
             reasons.append(reason)
-        return Trial(None, "; with the follower below the cam: ".join(reasons))
+        if len(reasons) == 1:
+            return Trial(None, reasons[0])
+        # The second arrangement, if any, has the follower below the cam.
+        above, below = reasons
+        return Trial(None, compose("parts-fits-neither-above-nor-below", above=above, below=below))
 
 
 def list_arrangements(mechanism: CamMechanism) -> Iterator[CamPlanes]:
@@ -237,7 +243,7 @@ class CamBuilder:
             names = ["cam"] if len(contours) == 1 else ["cam_1", "cam_2"]
             at = [planes.cam, planes.second or 0]
             return [
-                stack.make_plate(name, name.replace("_", " "), "cam", ON_CAM, Region(contour, hole), plane, colour)
+                stack.make_plate(name, describe_identifier(name), "cam", ON_CAM, Region(contour, hole), plane, colour)
                 for name, contour, plane, colour in zip(names, contours, at, CAM_COLOURS, strict=False)
             ]
         outer = self._mechanism.outer_wall
@@ -255,17 +261,31 @@ class CamBuilder:
         levels = min(planes.back, planes.cam), max(planes.back, planes.cam)
         held: list[Part] = []
         for n, z in enumerate(places, 1):
-            held += stack.make_pin(f"dowel_{n}", f"pin dowel {n}", ON_CAM, z, levels)
+            held += stack.make_pin(f"dowel_{n}", compose("parts-dowel-pin", number=n), ON_CAM, z, levels)
             held += stack.make_fillers(f"dowel_{n}", ON_CAM, z, [levels])
         back = Region(disc, (*hole, *dowels))
         return [
-            stack.make_plate("cam_back", "back of the cam", "cam", ON_CAM, back, planes.back, CAM_COLOURS[1]),
-            stack.make_plate("cam", "cam, inner wall of the groove", "cam", ON_CAM, Region(contours[0], hole),
-                             planes.cam, CAM_COLOURS[0]),
-            stack.make_plate("cam_wall", "outer wall of the groove", "cam", ON_CAM, Region(disc, (wall, *dowels)),
-                        planes.cam, CAM_COLOURS[0]),
+            stack.make_plate("cam_back", compose("parts-cam-back"), "cam", ON_CAM, back, planes.back, CAM_COLOURS[1]),
+            stack.make_plate(
+                "cam",
+                compose("parts-groove-inner-wall"),
+                "cam",
+                ON_CAM,
+                Region(contours[0], hole),
+                planes.cam,
+                CAM_COLOURS[0],
+            ),
+            stack.make_plate(
+                "cam_wall",
+                compose("parts-groove-outer-wall"),
+                "cam",
+                ON_CAM,
+                Region(disc, (wall, *dowels)),
+                planes.cam,
+                CAM_COLOURS[0],
+            ),
             *held,
-        ]  # fmt: skip
+        ]
 
     def _make_milled(self, inner: Curve, wall: Curve, disc: Disc) -> Part:
         """Make a cam with its groove in one piece."""
@@ -279,14 +299,16 @@ class CamBuilder:
             Prism(Region(disc, (wall,)), *walls),
         )
         span = (min(planes.back, planes.cam), max(planes.back, planes.cam))
-        material = MATERIALS[self._sizes.process][0]
-        return Part("cam", "cam with its groove", "cam", ON_CAM, bodies, 1.0 + 0.0j, span, material, CAM_COLOURS[0])
+        material = name_material(MATERIALS[self._sizes.process][0])
+        return Part(
+            "cam", compose("parts-grooved-cam"), "cam", ON_CAM, bodies, 1.0 + 0.0j, span, material, CAM_COLOURS[0]
+        )
 
     def _make_shaft(self) -> list[Part]:
         planes = self._planes
         # All plates of the cam rotate with the shaft.
         keyed = sorted(plane for plane in (planes.cam, planes.back, planes.second) if plane is not None)
-        parts = self._stack.make_pin("cam", "camshaft", ON_CAM, 0j, (0, keyed[-1]), keyed=keyed, stub=-1)
+        parts = self._stack.make_pin("cam", compose("parts-camshaft"), ON_CAM, 0j, (0, keyed[-1]), keyed=keyed, stub=-1)
         spans = [(0, keyed[0])] if self._sizes.process != "print" else []
         if planes.back is None or self._sizes.process == "laser":
             spans += pairwise(keyed)
@@ -338,14 +360,22 @@ class CamBuilder:
             # A bell crank needs an inner corner between its arms.
             apart = cmath.phase(arms[1] / arms[0])
             if not 0.0 < apart < MAX_ARM_ANGLE or radius / math.tan(0.5 * apart) > min(abs(arm) for arm in arms):
-                raise NotMade("The angle between the follower's two arms does not permit a one-piece plate.")
+                raise NotMade(compose("parts-follower-arms-angle"))
             crank = make_bell_crank(arms[0], arms[1], radius)
             shape = Loop(tuple(self._pivot + z for z in crank.corners), crank.bulges)
         holes = [Disc(z, 0.5 * self._sizes.hole) for z in (self._pivot, *(roller.centre for roller in rollers))]
         along = _normalize((rollers[0].centre if rollers else 0j) - self._pivot)
-        arm = self._stack.make_plate("follower", "arm", "link", ON_FOLLOWER, Region(shape, tuple(holes)), plane,
-                                FOLLOWER_COLOUR, along)  # fmt: skip
-        on_pivot = self._stack.make_pin("pivot", "pin pivot", GROUND_CARRIER, self._pivot, (0, plane))
+        arm = self._stack.make_plate(
+            "follower",
+            compose("parts-arm"),
+            "link",
+            ON_FOLLOWER,
+            Region(shape, tuple(holes)),
+            plane,
+            FOLLOWER_COLOUR,
+            along,
+        )
+        on_pivot = self._stack.make_pin("pivot", compose("parts-pivot-pin"), GROUND_CARRIER, self._pivot, (0, plane))
         if self._sizes.process != "print":
             on_pivot += self._stack.make_fillers("pivot", GROUND_CARRIER, self._pivot, [(0, plane)])
         return [arm, *on_pivot], [Disc(self._pivot, 0.5 * self._sizes.hole)], [self._pivot]
@@ -398,16 +428,23 @@ class CamBuilder:
                 holes.append(widen_hull([complex(-most), complex(-least)], around))
                 half = max(half, abs(line) + around + 0.5 * sizes.pin)
             shape = widen_hull([rollers[-1].centre, ends[1]], half)
-        stem = stack.make_plate("follower", "follower", "link", ON_FOLLOWER, Region(shape, tuple(holes)), plane,
-                           FOLLOWER_COLOUR)  # fmt: skip
+        stem = stack.make_plate(
+            "follower",
+            compose("parts-follower"),
+            "link",
+            ON_FOLLOWER,
+            Region(shape, tuple(holes)),
+            plane,
+            FOLLOWER_COLOUR,
+        )
         wide = 0.5 * sizes.block[1]
         runner = stack.make_plate(
-            "runner", "runner in the guide", "block", ON_FOLLOWER,
+            "runner", compose("parts-runner"), "block", ON_FOLLOWER,
             Region(widen_hull(ends, wide), tuple(Disc(z, 0.5 * sizes.hole) for z in ends)), 0, BLOCK_COLOUR,
         )  # fmt: skip
         parts = [stem, runner]
         for n, z in enumerate(ends, 1):
-            parts += stack.make_pin(f"guide_{n}", f"pin guide {n}", ON_FOLLOWER, z, (0, plane))
+            parts += stack.make_pin(f"guide_{n}", compose("parts-guide-pin", number=n), ON_FOLLOWER, z, (0, plane))
             parts += stack.make_fillers(f"guide_{n}", ON_FOLLOWER, z, [(0, plane)])
         # The runner's slot covers the whole stroke.
         way = [ends[0] + least, ends[1] + most]
@@ -418,10 +455,10 @@ class CamBuilder:
         levels = min(roller.plane, plane), max(roller.plane, plane)
         region = make_ring(roller.centre, roller.radius, 0.5 * sizes.hole)
         body = Prism(region, *stack.get_level(roller.plane))
-        material = {"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process]
-        part = Part(roller.name, roller.name.replace("_", " "), "block", ON_FOLLOWER, (body,), 1.0 + 0.0j,
+        material = name_material({"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process])
+        part = Part(roller.name, describe_identifier(roller.name), "block", ON_FOLLOWER, (body,), 1.0 + 0.0j,
                     (roller.plane, roller.plane), material, ROLLER_COLOUR, round=True)  # fmt: skip
-        pin = stack.make_pin(roller.name, f"pin {roller.name.replace('_', ' ')}", ON_FOLLOWER, roller.centre, levels)
+        pin = stack.make_pin(roller.name, describe_identifier(f"pin_{roller.name}"), ON_FOLLOWER, roller.centre, levels)
         return [part, *pin, *stack.make_fillers(roller.name, ON_FOLLOWER, roller.centre, [levels])]
 
     # The whole
@@ -440,9 +477,9 @@ class CamBuilder:
         return self._reach + max(abs(z) for z in points)
 
     def _list_notes(self) -> tuple[str, ...]:
-        notes = ["The camshaft protrudes below the base for the drive; all parts that rotate with it are keyed to it."]
+        notes = [compose("parts-camshaft-protrudes")]
         if self._planes.back is None and self._planes.second is None:
-            notes.append("A spring or a weight must hold the follower to the cam; it is not included.")
+            notes.append(compose("parts-follower-needs-force"))
         return tuple(notes)
 
 

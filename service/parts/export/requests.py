@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from pydantic import BaseModel
 
+from kinematics.message import compose
 from service.parts.assembly.items import list_items
 from service.parts.assembly.model import Assembly, InputField
 from service.parts.assembly.sizes import (
@@ -97,10 +98,10 @@ def make_item_file(order: JsonObject, name: str, form: PartFile) -> bytes | File
     item = next((item for item in listed if item.name == name), None)
     if item is None:
         return FileRefusal(
-            f"Unknown part. Parts of this design: {', '.join(item.name for item in listed)}.", "", known=False
+            compose("parts-unknown-part", parts=", ".join(item.name for item in listed)), "", known=False
         )
     if form not in list_files(item.part):
-        return FileRefusal(f"{name} has no {form} file.", "", known=False)
+        return FileRefusal(compose("parts-no-such-file", part=name, format=form), "", known=False)
     return write_item_file(item, form, _make_title(request))
 
 
@@ -138,6 +139,6 @@ def _choose_input(assembly: Assembly, query: AssemblyQuery) -> float:
     name = motion.input_field
     other: InputField = "input_angle" if name == "input_place" else "input_place"
     if getattr(query, other) is not None:
-        raise NotMade(f"The input of this mechanism is given by `{name}`.", f"/query/{other}")
+        raise NotMade(compose("parts-input-field", field=name), f"/query/{other}")
     input_value = getattr(query, name)
     return motion.reference if input_value is None else motion.convert_input(input_value, assembly.unit)

@@ -16,7 +16,9 @@ import numpy as np
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
+from kinematics.message import compose
 from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.descriptions import name_material
 from service.parts.assembly.fasteners import MATERIALS
 from service.parts.assembly.keys import find_key, make_bore
 from service.parts.assembly.model import Assembly, Part
@@ -74,7 +76,7 @@ def make_bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | 
     if wide > MAX_FACE_SHARE * cones.cone_distance:
         most = round_down(MAX_FACE_SHARE * cones.cone_distance / sizing.unit)
         raise NotMade(
-            f"The face width of bevel gears is limited to half the cone distance, {most:g} {sizing.words}.",
+            compose("parts-bevel-face-too-wide", largest=f"{most:g}", unit=sizing.words),
             "/query/face_width",
         )
     blanks = [
@@ -91,7 +93,7 @@ def make_bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | 
         try:
             return _Pair(stage, train.pressure_angle, (blanks[0], blanks[1]), play, sizes, sizing).build_assembly()
         except DimensionError as error:
-            raise NotMade(f"The gears cannot be cut: {error}.") from None
+            raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
         except NotMade as error:
             # Try the next thinner shaft; report the last refusal if none works.
             refused = error
@@ -203,7 +205,7 @@ class _Pair:
         """Both shafts: the driver's along x to the apex, the driven one's away from there."""
         sizes, angle = self.sizes, self.stage.shaft_angle
         found = []
-        for number, name in enumerate(("input shaft", "output shaft")):
+        for number, name in enumerate((compose("parts-input-shaft"), compose("parts-output-shaft"))):
             front, _, end = self._measure_hub(number)
             near = end + sizes.gap
             far = near + sizes.thickness + max(BEARING_SPAN * sizes.pin, sizes.gap)
@@ -243,22 +245,36 @@ class _Pair:
             Prism(hub, low, high),
         )
         role = "driven" if number else "driver"
+        described = compose("parts-bevel-driven" if number else "parts-bevel-driver", teeth=blank.teeth)
         return Part(
-            f"gear_1_{role}", f"bevel gear, {role}, {blank.teeth} teeth", "gear", axle.carrier, bodies, 1.0 + 0.0j,
-            (axle.plane, axle.plane), MATERIALS[sizes.process][1], LINK_COLOURS[number],
+            f"gear_1_{role}", described, "gear", axle.carrier, bodies, 1.0 + 0.0j,
+            (axle.plane, axle.plane), name_material(MATERIALS[sizes.process][1]), LINK_COLOURS[number],
         )  # fmt: skip
 
     def _list_notes(self) -> tuple[str, ...]:
         notes = [
-            f"Shaft angle {math.degrees(self.stage.shaft_angle):.6g}°; cone distance {self.blanks[0].distance:.6g} mm, "
-            f"face width {self.blanks[0].face_width:.6g} mm; module {self.stage.module:.6g} mm at the large end."
+            compose(
+                "parts-bevel-dimensions",
+                angle=f"{math.degrees(self.stage.shaft_angle):.6g}",
+                distance=f"{self.blanks[0].distance:.6g}",
+                width=f"{self.blanks[0].face_width:.6g}",
+                module=f"{self.stage.module:.6g}",
+            )
         ]
-        for number, (role, blank) in enumerate(zip(("Driver", "Driven gear"), self.blanks, strict=True)):
+        for number, (message_id, blank) in enumerate(
+            zip(("parts-bevel-driver-sizes", "parts-bevel-driven-sizes"), self.blanks, strict=True)
+        ):
             tip, root = (math.degrees(angle) for angle in blank.cones)
             notes.append(
-                f"{role}: {blank.teeth} teeth, pitch cone {math.degrees(blank.cone):.4f}°, tip cone {tip:.4f}°, root "
-                f"cone {root:.4f}°, outside diameter {2.0 * blank.corners[2].real:.6g} mm; mounting distance from the "
-                f"apex to the end of the hub {self._measure_hub(number)[2]:.6g} mm."
+                compose(
+                    message_id,
+                    teeth=blank.teeth,
+                    pitch=f"{math.degrees(blank.cone):.4f}",
+                    tip=f"{tip:.4f}",
+                    root=f"{root:.4f}",
+                    diameter=f"{2.0 * blank.corners[2].real:.6g}",
+                    distance=f"{self._measure_hub(number)[2]:.6g}",
+                )
             )
-        notes.append("Glue or wedge the tabs of the bearing plates into the slots of the base.")
+        notes.append(compose("parts-glue-bearing-plates"))
         return tuple(notes)

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import BASE_COLOUR
+from service.parts.assembly.descriptions import describe_identifier, describe_name, name_material
 from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PLAIN_PIN, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Carrier, Part, simplify_name
@@ -114,7 +116,7 @@ class Housing:
         for number, place in enumerate(places, 1):
             name, carrier = f"post_{number}", Carrier(GROUND, None)
             found += self._stack_parts(
-                name, f"post {number}", carrier, place, (0, self.top), (0, *self.standing, self.top)
+                name, describe_name(f"post {number}"), carrier, place, (0, self.top), (0, *self.standing, self.top)
             )
         return found
 
@@ -138,13 +140,13 @@ class Housing:
         outer = widen_hull([*self.find_corners(), *posts], 0.5 * self.sizes.width)
         return Part(
             name=name,
-            described=name.replace("_", " "),
+            described=describe_identifier(name),
             sort="base",
             carrier=Carrier(GROUND, None),
             bodies=(Prism(Region(outer, tuple(cuts)), self.levels[level].low, self.levels[level].high),),
             along=1.0 + 0.0j,
             planes=(level, level),
-            material=MATERIALS[self.sizes.process][0],
+            material=name_material(MATERIALS[self.sizes.process][0]),
             colour=BASE_COLOUR,
         )
 
@@ -203,6 +205,11 @@ class Housing:
         return parts
 
 
+def describe_support(shaft: str, *, lower: bool) -> str:
+    """Return the note that only the lower or only the upper plate holds a shaft."""
+    return compose("parts-held-by-lower-plate" if lower else "parts-held-by-upper-plate", shaft=shaft)
+
+
 def make_seat(
     shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, planes: Sequence[int], sizes: Sizes,
     towards: complex = 1.0 + 0.0j,
@@ -216,15 +223,16 @@ def make_seat(
     """
     # Keys are shorter than their wheel, so that they do not rub on neighbours.
     key, low, high = find_key(sizes.pin), level.low + sizes.play, level.high - sizes.play
+    message_id = "parts-key-of-shaft" if len(planes) == 1 else "parts-feather-key-of-shaft"
     part = Part(
         name=f"key_{simplify_name(shaft)}_{number}",
-        described=f"{'key' if len(planes) == 1 else 'feather key'} of the {shaft}",
+        described=compose(message_id, shaft=shaft),
         sort="key",
         carrier=carrier,
         bodies=(Prism(Region(make_key_section(axis, sizes.pin, key, towards)), low, high),),
         along=towards,
         planes=(planes[0], planes[-1]),
-        material=MATERIALS[sizes.process][1],
+        material=name_material(MATERIALS[sizes.process][1]),
         colour=FASTENER_COLOUR,
         standard=f"{key.standard} x {high - low:g}" if key.standard else "",
     )

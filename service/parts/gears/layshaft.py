@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from kinematics.errors import DimensionError
+from kinematics.message import compose
 from service.parts.assembly.model import Assembly, Carrier, Part
 from service.parts.assembly.sizes import NotMade, PartsQuery, Sizes
 from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
@@ -24,7 +25,15 @@ from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 
 INPUT_SHAFT, LAYSHAFT_SHAFT, MAIN_SHAFT = 0, 1, 2
-SHAFT_NAMES = ("input shaft", "layshaft", "main shaft", "axle of the idler")
+SHAFT_MESSAGES = ("parts-input-shaft", "parts-layshaft", "parts-main-shaft", "parts-axle-of-idler")
+GEAR_MESSAGES = (
+    "parts-gear-on-input-shaft",
+    "parts-gear-on-layshaft",
+    "parts-gear-on-main-shaft",
+    "parts-gear-on-idler-axle",
+)
+"""Messages that describe a shaft, and a gear on it, by its index."""
+
 KEYED_PAIR = "GEAR_1"
 """The pair whose gear is keyed to the main shaft."""
 
@@ -52,7 +61,7 @@ def make_layshaft_parts(design: LayshaftDesign, problem: LayshaftProblem, query:
         }
     )
     if mechanism.gears[0].layshaft is None:
-        raise NotMade("Parts are made with the first gear engaged, but the first gear of this gearbox is direct drive.")
+        raise NotMade(compose("parts-first-gear-direct"))
     gears = arrange_layshaft(mechanism).gears
     sizing.check_size(4.0 * mechanism.centre_distance)
     smallest = min((gear.gear for gear in gears), key=lambda gear: gear.root_radius)
@@ -63,10 +72,9 @@ def make_layshaft_parts(design: LayshaftDesign, problem: LayshaftProblem, query:
             try:
                 return task.build_assembly(reaches)
             except DimensionError as error:
-                raise NotMade(f"The gears cannot be cut: {error}.") from None
+                raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
     raise NotMade(
-        "The shafts do not fit: one of them, or a part on it, would pass through a gear. Try thinner shafts or "
-        "another scale.", sizing.path,
+        compose("parts-shafts-obstructed"), sizing.path,
     )  # fmt: skip
 
 
@@ -102,7 +110,7 @@ class _LayshaftTask:
         for number, (gear, speed) in enumerate(zip(self.gears, self.speeds, strict=True)):
             pair = gear.pair.lower()
             role = ("input", "layshaft", "main", "idler")[gear.shaft]
-            words = f"{pair.replace('_', ' ')}, {role}, {gear.gear.teeth:g} teeth"
+            words = compose(GEAR_MESSAGES[gear.shaft], pair=_describe_pair(pair), teeth=f"{gear.gear.teeth:g}")
             wheels.append(
                 Wheel(
                     f"gear_{pair.removeprefix('gear_')}_{role}", words, gear.gear, gear.shaft, gear.slot + 1,
@@ -137,7 +145,7 @@ class _LayshaftTask:
             own = [gear for gear in self.gears if gear.shaft == number]
             shafts.append(
                 Shaft(
-                    SHAFT_NAMES[number], Carrier(f"shaft_{number + 1}", None), axis, reaches[number],
+                    compose(SHAFT_MESSAGES[number]), Carrier(f"shaft_{number + 1}", None), axis, reaches[number],
                     tuple(gear.slot + 1 for gear in own if not self._is_free(gear)),
                     tuple(gear.slot + 1 for gear in own if self._is_free(gear)),
                     ends=number in (INPUT_SHAFT, MAIN_SHAFT),
@@ -157,11 +165,20 @@ class _LayshaftTask:
         motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MAX_TURNS))
         assembly = Assembly(
             (*parts, *housing.make_parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
-            ("The first gear is engaged: it is keyed to the main shaft; the others turn freely on it.",
-             "The mechanism that engages other gears, or couples input and main shaft, is not included."),
+            (compose("parts-first-gear-engaged"),
+             compose("parts-gearshift-not-included")),
         )  # fmt: skip
         return check_assembly(assembly, self.sizes, self.sizing)
 
     def _make_levels(self) -> tuple[Level, ...]:
         face = self.sizing.choose_face_width(self.gears[0].gear.module, None)
         return stack_levels([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
+
+
+def _describe_pair(pair: str) -> str:
+    """Return the description of a pair by its name: head, reverse, or a gear with its number."""
+    if pair == "head":
+        return compose("parts-head-pair")
+    if pair == "reverse":
+        return compose("parts-reverse-pair")
+    return compose("parts-gear-pair", number=pair.removeprefix("gear_"))

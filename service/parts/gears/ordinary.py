@@ -9,10 +9,11 @@ from functools import cached_property
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
+from kinematics.message import compose
 from service.parts.assembly.model import Assembly, Carrier, Part
 from service.parts.assembly.sizes import NotMade, PartsQuery, Sizes
 from service.parts.gears.bevel_pair import make_bevel_parts
-from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.housing import Housing, Level, Shaft, describe_support, stack_levels
 from service.parts.gears.motion import BodyRotation, TrainMotion
 from service.parts.gears.sizing import GearSizing
 from service.parts.gears.stand import Arrangement, Clearances, Wheel, find_arrangement
@@ -104,17 +105,13 @@ class OrdinaryParts:
             if stand is not None:
                 return task.build_assembly(stand)
         raise NotMade(
-            "The shafts do not fit: in every arrangement one of them, or a part on it, would pass through a gear. "
-            "Try thinner shafts or another scale.", sizing.path,
+            compose("parts-shafts-obstructed-in-every-arrangement"), sizing.path,
         )  # fmt: skip
 
     def _build_crossing(self, train: OrdinaryTrain, sizing: GearSizing) -> Assembly:
         """Return the parts of a train with non-parallel shafts."""
         if len(train.stages) > 1:
-            raise NotMade(
-                "Parts of bevel gears and worms are only available for single-stage trains: further stages would need "
-                "housings at right angles to one another."
-            )
+            raise NotMade(compose("parts-crossing-shafts-single-stage"))
         make = make_worm_parts if train.stages[0].kind == "worm" else make_bevel_parts
         return make(train, self.backlash[0], self.face_widths[0], sizing)
 
@@ -124,7 +121,7 @@ class OrdinaryParts:
                 tuple(replace(stage, module=factor * stage.module) for stage in self.stages), self.pressure_angle
             )
         except DimensionError as error:
-            raise NotMade(f"The gears cannot be cut: {error}.") from None
+            raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
 
 
 @dataclass(frozen=True)
@@ -185,12 +182,12 @@ class _OrdinaryTask:
             outer = compute_rim_radius(gear.gear, self.sizes) if ring else gear.gear.tip_radius
             # Gears in external mesh have opposite hands.
             helix = gear.helix_angle * (1.0 if gear.role == "driver" else -1.0)
-            what = "ring" if ring else "gear"
-            words = f"{what} of stage {number + 1}, {role.replace('_', ' ')}, {gear.count} teeth"
+            words = _describe_gear(role, number + 1, gear.count, ring=ring)
             wheels.append(
                 Wheel(
                     f"gear_{number + 1}_{role}", words, gear.gear, shaft, level, gear.centre, gear.tooth_at, outer,
                     float(gear.speed), 2 * number + (role == "driven"), helix, web if ring else None, play,
+                    web_described=compose("parts-web-of-ring"),
                 )
             )  # fmt: skip
         return wheels
@@ -215,11 +212,19 @@ class _OrdinaryTask:
         count = len(self.train.stages) + 1
         return f"shaft_{shaft + 1}" if shaft < count else f"idler_{shaft - count + 1}"
 
+    def _describe_shaft(self, number: int) -> str:
+        count = len(self.train.stages) + 1
+        if number == 0:
+            return compose("parts-input-shaft")
+        if number == count - 1:
+            return compose("parts-output-shaft")
+        if number < count:
+            return compose("parts-numbered-shaft", number=number + 1)
+        return compose("parts-idler-axle", number=number - count + 1)
+
     def _make_shaft(self, number: int, stand: Arrangement) -> Shaft:
         count = len(self.train.stages) + 1
-        name = self._name_body(number).replace("_", " ")
-        if number in (0, count - 1):
-            name = "input shaft" if number == 0 else "output shaft"
+        name = self._describe_shaft(number)
         # A ring is keyed by its web.
         keyed = [wheel.level if wheel.web is None else wheel.web for wheel in stand.wheels if wheel.shaft == number]
         return Shaft(
@@ -244,9 +249,17 @@ class _OrdinaryTask:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MAX_TURNS))
 
     def _list_notes(self, stand: Arrangement) -> tuple[str, ...]:
-        notes = ["Wheels are keyed to their shafts; the ends that protrude from the plates are input and output."]
+        notes = [compose("parts-wheels-keyed")]
         for number, reach in enumerate(stand.reaches):
             if reach != (0, self.highest + 1):
-                plate = "lower" if reach[0] == 0 else "upper"
-                notes.append(f"The {self._make_shaft(number, stand).name} is held only by the {plate} plate.")
+                notes.append(describe_support(self._describe_shaft(number), lower=reach[0] == 0))
         return tuple(notes)
+
+
+def _describe_gear(role: str, stage: int, teeth: int, *, ring: bool) -> str:
+    """Return the description of a gear or ring by its role in a stage: driver, driven, or an idler with its number."""
+    if role == "driver":
+        return compose("parts-ring-driver" if ring else "parts-gear-driver", stage=stage, teeth=teeth)
+    if role == "driven":
+        return compose("parts-ring-driven" if ring else "parts-gear-driven", stage=stage, teeth=teeth)
+    return compose("parts-gear-idler", stage=stage, number=role.removeprefix("idler_"), teeth=teeth)

@@ -13,7 +13,9 @@ import numpy as np
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.descriptions import describe_identifier, describe_name, name_material
 from service.parts.assembly.fasteners import MATERIALS
 from service.parts.assembly.keys import find_key, make_bore
 from service.parts.assembly.model import Assembly, Carrier, Part, simplify_name
@@ -21,7 +23,7 @@ from service.parts.assembly.sizes import MIN_WALL_PER_PIN, NotMade, PartsQuery, 
 from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
 from service.parts.gears.motion import BodyRotation, TrainMotion
 from service.parts.gears.planetary_build import Build, choose_build
-from service.parts.gears.sizing import GearSizing
+from service.parts.gears.sizing import GearSizing, Passage
 from service.parts.gears.stand import Wheel
 from service.parts.gears.teeth import make_teeth
 from service.parts.gears.wheels import JOINT_WALL_RATIO, check_assembly, compute_rim_radius, make_wheel_parts
@@ -54,23 +56,23 @@ def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, que
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     # Only one carrier fits between the two central shafts.
     if arrangement.bevel or len(set(arrangement.carriers.values())) > 1:
-        raise NotMade("Parts are only available for planetary trains of spur gears with one carrier.")
+        raise NotMade(compose("parts-planetary-type-not-available"))
     build = choose_build(arrangement, (mechanism.input, mechanism.output, mechanism.fixed))
     if build is None:
-        raise NotMade("The input and the output of this train cannot both be reached from two plates.")
+        raise NotMade(compose("parts-planetary-shafts-unreachable"))
     sizing = GearSizing(query, problem.length_unit)
     module = mechanism.module * sizing.factor
     sizing.check_size(design.metrics.size * sizing.factor)
     gears = place_planetary_gears(mechanism.model_copy(update={"module": module}))
     smallest = min((one.gear for one in gears if not one.gear.internal), key=lambda gear: gear.root_radius)
     refused = None
-    for sizes in sizing.list_sizes(smallest, *_find_min_clearance(gears, arrangement, build)):
+    for sizes in sizing.list_sizes(smallest, _find_narrowest_passage(gears, arrangement, build)):
         try:
             return _PlanetaryTask(
                 mechanism, arrangement, design.metrics.speeds, build, gears, sizes, sizing
             ).build_assembly()
         except DimensionError as error:
-            raise NotMade(f"The gears cannot be cut: {error}.") from None
+            raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
         except NotMade as error:
             if error.path == "/query/clearance":  # teeth collide on any shafts
                 raise
@@ -79,12 +81,9 @@ def make_planetary_parts(design: PlanetaryDesign, problem: PlanetaryProblem, que
     raise refused
 
 
-def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
-    """Return the minimum distance from a planet's axis to a gear that its axle passes, and their names in words.
-
-    The distance is infinite if no axle passes a gear.
-    """
-    near = [(math.inf, "")]
+def _find_narrowest_passage(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> Passage | None:
+    """Return the passage with the minimum distance from a planet's axis to a gear that its axle passes, or None."""
+    near: list[Passage] = []
     plate = 0 if build.carrier is None else build.carrier
     for planet in (gear for gear in gears if gear.body in arrangement.carriers):
         own = [build.planes[plane] for gear in arrangement.gears if gear.body == planet.body for plane in gear.planes]
@@ -98,10 +97,9 @@ def _find_min_clearance(gears: Sequence[PlanetaryGear], arrangement: Arrangement
             ):
                 continue
             away = abs(planet.centre - other.centre) - other.gear.tip_radius
-            words = f"axle of the {planet.name.replace('_', ' ')} passes the {other.name.replace('_', ' ')}"
             # Radial space between the axle and the gear that it passes.
-            near.append((away, words))
-    return min(near)
+            near.append(Passage(away, planet.name, other.name))
+    return min(near, default=None)
 
 
 @dataclass(frozen=True)
@@ -173,11 +171,12 @@ class _PlanetaryTask:
         name = f"{simplify_name(gear.name)}_{gear.copy + 1}" if planet else simplify_name(gear.name)
         outer = compute_rim_radius(gear.gear, self.sizes) if gear.gear.internal else gear.gear.tip_radius
         names = list(self.mechanism.teeth)
+        described = compose("parts-wheel-with-teeth", wheel=describe_identifier(name), teeth=f"{gear.gear.teeth:g}")
         return Wheel(
-            f"gear_{name}", f"{name.replace('_', ' ')}, {gear.gear.teeth:g} teeth", gear.gear, tint, levels[0],
+            f"gear_{name}", described, gear.gear, tint, levels[0],
             gear.centre, gear.tooth_at, outer, self.speeds[gear.body], names.index(gear.name),
             web=self.build.webs.get(gear.body) if gear.gear.internal else None, play=0.5 * self.sizes.clearance,
-            top=levels[-1],
+            top=levels[-1], web_described=compose("parts-web-of-wheel", wheel=described),
         )  # fmt: skip
 
     def _make_parts(self, gear: PlanetaryGear, wheel: Wheel, posts: Sequence[complex]) -> list[Part]:
@@ -197,10 +196,16 @@ class _PlanetaryTask:
         holes = [Disc(post, 0.5 * self.sizes.hole) for post in posts]
         level = self.levels[wheel.level]
         return Part(
-            wheel.name, wheel.described, "gear", Carrier(GROUND, None),
-            (Prism(Region(outer, (teeth, *holes)), level.low, level.high),), 1.0 + 0.0j,
-            (wheel.level, wheel.level), MATERIALS[self.sizes.process][0], LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
-        )  # fmt: skip
+            wheel.name,
+            wheel.described,
+            "gear",
+            Carrier(GROUND, None),
+            (Prism(Region(outer, (teeth, *holes)), level.low, level.high),),
+            1.0 + 0.0j,
+            (wheel.level, wheel.level),
+            name_material(MATERIALS[self.sizes.process][0]),
+            LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
+        )
 
     def _is_stepped(self, planet: str) -> bool:
         """Return whether a planet has several gears, which are keyed to one pin."""
@@ -250,11 +255,15 @@ class _PlanetaryTask:
             plate = 0 if side == "low" else top
             found.append(
                 Shaft(
-                    f"shaft of the {body.replace('_', ' ')}", self.get_carrier(body), 0j, (low, high),
-                    (hubs[body], plate) if is_fixed else (hubs[body],), tuple(loose),
+                    compose("parts-shaft-of-member", member=describe_identifier(body)),
+                    self.get_carrier(body),
+                    0j,
+                    (low, high),
+                    (hubs[body], plate) if is_fixed else (hubs[body],),
+                    tuple(loose),
                     ends=body in (self.mechanism.input, self.mechanism.output),
                 )
-            )  # fmt: skip
+            )
         for name, centre in self._find_pins().items():
             found.append(self._make_pin(name, centre))
         return found
@@ -265,13 +274,14 @@ class _PlanetaryTask:
         plate = 0 if self.build.carrier is None else self.build.carrier
         levels = sorted({self.build.planes[plane] for gear in own for plane in gear.planes})
         reach = min(plate, *levels), max(plate, *levels)
-        words = f"planet {name.replace('planet', '').strip('_').replace('_', ' ')}".strip()
+        planet = describe_name(f"planet {name.replace('planet', '').strip('_').replace('_', ' ')}".strip())
+        described = compose("parts-axle-of-planet", planet=planet)
         if self._is_stepped(own[0].body):
             keyed = tuple(self.build.planes[gear.planes[0]] for gear in own)
-            return Shaft(f"axle of {words}", Carrier(name, None), centre, reach, keyed, (plate,),
+            return Shaft(described, Carrier(name, None), centre, reach, keyed, (plate,),
                          towards=self._find_key_direction(own[0]))  # fmt: skip
         carrier = Carrier(self.get_carrier(self.carrier).link, None)
-        return Shaft(f"axle of {words}", carrier, centre, reach, (), (plate, *levels), spanned=tuple(levels[:-1]))
+        return Shaft(described, carrier, centre, reach, (), (plate, *levels), spanned=tuple(levels[:-1]))
 
     def _make_carrier_plate(self, level: int) -> Part:
         sizes = self.sizes
@@ -287,14 +297,14 @@ class _PlanetaryTask:
             outer = around if _is_hub_uncovered(pins, sizes) else outer
         holes = (hub, *(Disc(pin, 0.5 * sizes.hole) for pin in pins))
         return Part(
-            simplify_name(self.carrier), "carrier", "link", self.get_carrier(self.carrier),
+            simplify_name(self.carrier), compose("parts-carrier"), "link", self.get_carrier(self.carrier),
             (Prism(Region(outer, holes), self.levels[level].low, self.levels[level].high),), 1.0 + 0.0j,
-            (level, level), MATERIALS[sizes.process][0], LINK_COLOURS[-1],
+            (level, level), name_material(MATERIALS[sizes.process][0]), LINK_COLOURS[-1],
         )  # fmt: skip
 
     def _mark_identical(self, part: Part) -> Part:
         """Mark pins of a planet's copies as identical, including keyed ones."""
-        if part.sort == "pin" and part.described.startswith("axle of planet") and not part.round:
+        if part.sort == "pin" and part.name.startswith("pin_axle_of_planet") and not part.round:
             return replace(part, like="axle of a planet")
         return part
 
@@ -314,17 +324,18 @@ class _PlanetaryTask:
         return TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), 400))
 
     def _list_notes(self) -> tuple[str, ...]:
-        notes = ["Gears are keyed to their shafts; planets turn on their pins, stepped planets together with them."]
-        fixed = f"The {self.mechanism.fixed.replace('_', ' ')} is fixed"
-        if self.build.access[self.mechanism.fixed] == "held":
-            what = "is the lower plate" if self.mechanism.fixed == self.carrier else "is held by the posts"
-            notes.append(f"{fixed}: it {what}.")
+        notes = [compose("parts-planetary-gears-keyed")]
+        if self.build.access[self.mechanism.fixed] != "held":
+            message_id = "parts-member-fixed-by-key"
+        elif self.mechanism.fixed == self.carrier:
+            message_id = "parts-member-is-lower-plate"
         else:
-            notes.append(f"{fixed} by a key between its shaft and the plate.")
-        for role, body in (("input", self.mechanism.input), ("output", self.mechanism.output)):
-            if self.build.access[body] == "loose":
-                own = f"The {body.replace('_', ' ')} is the {role}"
-                notes.append(f"{own}, and has no shaft of its own: connect to its rim.")
+            message_id = "parts-member-held-by-posts"
+        notes.append(compose(message_id, member=describe_identifier(self.mechanism.fixed)))
+        if self.build.access[self.mechanism.input] == "loose":
+            notes.append(compose("parts-input-without-shaft", member=describe_identifier(self.mechanism.input)))
+        if self.build.access[self.mechanism.output] == "loose":
+            notes.append(compose("parts-output-without-shaft", member=describe_identifier(self.mechanism.output)))
         return tuple(notes)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from kinematics.message import compose
 from service.parts.assembly.model import Assembly
 from service.parts.assembly.sizes import NotMade, PartsQuery
 from service.parts.gears.ordinary import OrdinaryParts, find_backlash
@@ -30,17 +31,11 @@ def make_series_parts(design: TrainSeriesDesign, problem: TrainSeriesProblem, qu
     """
     units = [unit for unit in design.mechanism.units if isinstance(unit, GearTrainMechanism)]
     if len(units) < len(design.mechanism.units):
-        raise NotMade(
-            "Parts are only available for series of ordinary trains; this one has a planetary train, whose shafts end "
-            "at its carrier and its ring. Request the parts of each train separately."
-        )
+        raise NotMade(compose("parts-series-with-planetary"))
     if any(unit.reverted for unit in problem.units):
-        raise NotMade(
-            "Parts are only available for series of trains that are not reverted: stages in a row have no two coaxial "
-            "shafts. Request the parts of a reverted train separately."
-        )
+        raise NotMade(compose("parts-series-with-reverted"))
     if len({unit.pressure_angle for unit in units}) > 1:
-        raise NotMade("Parts are only available for trains with one pressure angle.")
+        raise NotMade(compose("parts-series-pressure-angles"))
     stages = [stage for unit in units for stage in build_train(unit).stages]
     measured = [metrics for metrics in design.metrics.units if isinstance(metrics, GearTrainMetrics)]
     plays = [

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from kinematics.gear.teeth import Gear
+from kinematics.message import compose
+from service.parts.assembly.descriptions import describe_identifier
 from service.parts.assembly.keys import find_key
 from service.parts.assembly.sizes import (
     DEFAULT_CLEARANCES,
@@ -49,6 +52,17 @@ MAX_TRIED = 6
 """Maximum number of default bores that are tried."""
 
 
+class Passage(NamedTuple):
+    """The axle of a planet next to a gear that it passes: the distance of its axis from the teeth, millimetres.
+
+    The planet and the gear are given by their names in the arrangement.
+    """
+
+    distance: float
+    planet: str
+    gear: str
+
+
 class GearSizing:
     """Options of a request for a train, and derived sizes.
 
@@ -69,14 +83,19 @@ class GearSizing:
         self.factor = self.unit * query.scale
         self.path = "/query/scale" if query.bore is None else "/query/bore"
 
-    def check_size(self, size: float, what: str = "train") -> None:
+    def check_size(self, size: float, message_id: str = "parts-train-too-large") -> None:
         """Refuse assemblies larger than the maximum."""
         if size > MAX_ASSEMBLY_SIZE:
             most = round_down(self.query.scale * MAX_ASSEMBLY_SIZE / size)
             raise NotMade(
-                f"The {what} is about {size / 1000.0:.4g} m large at this scale, but parts are made up to "
-                f"{MAX_ASSEMBLY_SIZE / 1000.0:g} m; use at most scale {most:g}.", "/query/scale",
-            )  # fmt: skip
+                compose(
+                    message_id,
+                    size=f"{size / 1000.0:.4g}",
+                    largest=f"{MAX_ASSEMBLY_SIZE / 1000.0:g}",
+                    scale=f"{most:g}",
+                ),
+                "/query/scale",
+            )
 
     def choose_face_width(self, module: float, answered: float | None) -> float:
         """Return the face width of a gear: as requested, as in the answer, or the default in modules.
@@ -95,28 +114,32 @@ class GearSizing:
         least, most = MIN_FACE_WIDTH * module, MAX_FACE_WIDTH * module
         if not least <= width <= most:
             raise NotMade(
-                f"The face width must be from {round_up(least / self.unit):g} to "
-                f"{round_down(most / self.unit):g} {self.words} for a module of {module / self.unit:.4g}.",
+                compose(
+                    "parts-face-width-out-of-range",
+                    smallest=f"{round_up(least / self.unit):g}",
+                    largest=f"{round_down(most / self.unit):g}",
+                    unit=self.words,
+                    module=f"{module / self.unit:.4g}",
+                ),
                 "/query/face_width",
             )
         return width
 
-    def list_sizes(self, smallest: Gear, room: float = math.inf, passed: str = "") -> Iterator[Sizes]:
+    def list_sizes(self, smallest: Gear, passage: Passage | None = None) -> Iterator[Sizes]:
         """Yield sizes with the requested bore, or with bores that fit the smallest gear, thickest first.
 
         Parameters
         ----------
         smallest : Gear
-        room : float
-            Distance from the axis of a shaft with its collar or spacer to a gear that it passes, millimetres.
-        passed : str
-            The shaft and the gear there, in words.
+        passage : Passage, optional
+            The narrowest passage of an axle with its collar or spacer next to a gear.
         """
         query, unit = self.query, self.unit
+        room = math.inf if passage is None else passage.distance
         if query.bore is not None:
             sizes = self._make_requested(query.bore * unit, smallest)
-            if _measure_clearance(sizes) > room:
-                raise NotMade(self._describe_obstruction(room, passed), "/query/bore")
+            if passage is not None and _measure_clearance(sizes) > room:
+                raise NotMade(compose("parts-axle-too-close", **self._describe_passage(passage)), "/query/bore")
             yield sizes
             return
         most = 2.0 * MAX_BORE_PER_ROOT * smallest.root_radius
@@ -132,31 +155,49 @@ class GearSizing:
                 thinnest.pin / most,
             )
             raise NotMade(
-                f"The smallest gear has a root circle of {2.0 * smallest.root_radius / unit:.4g} {self.words}, too "
-                "small "
-                f"for a shaft; use scale {round_up(1.05 * query.scale * needed):g} or more.", "/query/scale",
-            )  # fmt: skip
+                compose(
+                    "parts-root-circle-too-small",
+                    diameter=f"{2.0 * smallest.root_radius / unit:.4g}",
+                    unit=self.words,
+                    scale=f"{round_up(1.05 * query.scale * needed):g}",
+                ),
+                "/query/scale",
+            )
         fits = [sizes for sizes in fits if _measure_clearance(sizes) <= room]
-        if not fits:
+        if passage is not None and not fits:
             needed = round_up(
                 1.05 * query.scale * _measure_clearance(self._make_sizes(PIN_DIAMETERS[0], smallest)) / room
             )
-            raise NotMade(f"{self._describe_obstruction(room, passed)}; use scale {needed:g} or more.", "/query/scale")
+            raise NotMade(
+                compose("parts-axle-too-close-at-scale", **self._describe_passage(passage), scale=f"{needed:g}"),
+                "/query/scale",
+            )
         for sizes in fits[:MAX_TRIED]:
             check_sizes(sizes, unit)
             yield sizes
 
-    def _describe_obstruction(self, room: float, passed: str) -> str:
-        distance = f"{room / self.unit:.4g} {self.words}"
-        return f"The {passed} at {distance} from its axis, too close for a shaft with a spacer"
+    def _describe_passage(self, passage: Passage) -> dict[str, str]:
+        """Return the values of a message about a passage."""
+        return {
+            "planet": describe_identifier(passage.planet),
+            "gear": describe_identifier(passage.gear),
+            "distance": f"{passage.distance / self.unit:.4g}",
+            "unit": self.words,
+        }
 
     def _make_requested(self, bore: float, smallest: Gear) -> Sizes:
         unit = self.unit
         if not MIN_PIN <= bore <= MAX_PIN:
             raise NotMade(
-                f"Shafts of {bore / unit:.6g} {self.words} are not available; use {MIN_PIN / unit:g} to "
-                f"{MAX_PIN / unit:g} {self.words}.", "/query/bore",
-            )  # fmt: skip
+                compose(
+                    "parts-shaft-not-available",
+                    bore=f"{bore / unit:.6g}",
+                    unit=self.words,
+                    smallest=f"{MIN_PIN / unit:g}",
+                    largest=f"{MAX_PIN / unit:g}",
+                ),
+                "/query/bore",
+            )
         sizes = self._make_sizes(bore, smallest)
         check_sizes(sizes, unit)
         if not self._check_fit(sizes, smallest):
@@ -165,13 +206,17 @@ class GearSizing:
                 for one in PIN_DIAMETERS
                 if one < bore and self._check_fit(self._make_sizes(one, smallest), smallest)
             ]
-            works = f"; use {thinner[-1] / unit:g} {self.words}" if thinner else ""
-            raise NotMade(
-                f"A bore of {bore / unit:.6g} {self.words} with its keyway leaves too thin a wall below the teeth of "
-                f"the smallest gear, whose root circle is {2.0 * smallest.root_radius / unit:.4g} "
-                f"{self.words}{works}.",
-                "/query/bore",
+            values = {
+                "bore": f"{bore / unit:.6g}",
+                "unit": self.words,
+                "diameter": f"{2.0 * smallest.root_radius / unit:.4g}",
+            }
+            detail = (
+                compose("parts-bore-too-large", **values, thinner=f"{thinner[-1] / unit:g}")
+                if thinner
+                else compose("parts-bore-too-large-for-any", **values)
             )
+            raise NotMade(detail, "/query/bore")
         return sizes
 
     def _make_sizes(self, bore: float, smallest: Gear) -> Sizes:
@@ -185,10 +230,14 @@ class GearSizing:
             clearance = query.clearance * unit
             if clearance > MAX_TOOTH_PLAY * module:
                 raise NotMade(
-                    "The clearance is also the play of the teeth, and must be at most "
-                    f"{round_down(MAX_TOOTH_PLAY * module / unit):g} {self.words} for the module "
-                    f"{module / unit:.4g}.", "/query/clearance",
-                )  # fmt: skip
+                    compose(
+                        "parts-tooth-play-too-large",
+                        largest=f"{round_down(MAX_TOOTH_PLAY * module / unit):g}",
+                        unit=self.words,
+                        module=f"{module / unit:.4g}",
+                    ),
+                    "/query/clearance",
+                )
         thickness = choose_sheet(bore) if query.thickness is None else query.thickness * unit
         return Sizes(query.process, WIDTH_PER_PIN * bore, bore, thickness, clearance)
 

@@ -15,13 +15,15 @@ from functools import cached_property
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
+from kinematics.message import compose, join_messages
 from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.descriptions import name_material
 from service.parts.assembly.fasteners import MATERIALS
 from service.parts.assembly.keys import find_key, make_bore
 from service.parts.assembly.model import Assembly, Carrier, Part
 from service.parts.assembly.sizes import MIN_WALL_PER_PIN, NotMade, PartsQuery, Sizes
 from service.parts.gears.clusters import Cluster, make_clusters
-from service.parts.gears.housing import Housing, Level, Shaft, stack_levels
+from service.parts.gears.housing import Housing, Level, Shaft, describe_support, stack_levels
 from service.parts.gears.motion import BodyRotation, TrainMotion
 from service.parts.gears.ordinary import MAX_TURNS
 from service.parts.gears.sizing import GearSizing, measure_keyway_reach
@@ -55,13 +57,15 @@ def make_sliding_parts(design: GearboxDesign, problem: GearboxProblem, query: Pa
     speeds = design.metrics.speeds
     number = 1 if query.speed is None else query.speed
     if number > len(speeds):
-        raise NotMade(f"This gearbox has the speeds 1 to {len(speeds)}.", "/query/speed")
+        raise NotMade(compose("parts-speed-out-of-range", count=len(speeds)), "/query/speed")
     sizing = GearSizing(query, problem.length_unit)
     teeth = tuple(tuple((pair.driver, pair.driven) for pair in stage.pairs) for stage in design.mechanism.stages)
     module, angle = sizing.factor * design.mechanism.module, math.radians(design.mechanism.pressure_angle)
     gears = {count: Gear(count, module, angle) for pairs in teeth for pair in pairs for count in pair}
     sizing.check_size(module * sum(sum(pairs[0]) for pairs in teeth))
-    description = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min at the output"
+    description = compose(
+        "parts-speed-shown", number=number, count=len(speeds), speed=f"{speeds[number - 1].speed:.6g}"
+    )
     smallest = min(gears.values(), key=lambda gear: gear.root_radius)
     for sizes in sizing.list_sizes(smallest):
         task = _SlidingTask(teeth, gears, tuple(speeds[number - 1].engaged), description, sizes, sizing)
@@ -70,10 +74,9 @@ def make_sliding_parts(design: GearboxDesign, problem: GearboxProblem, query: Pa
             try:
                 return task.build_assembly(stand)
             except DimensionError as error:
-                raise NotMade(f"The gears cannot be cut: {error}.") from None
+                raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
     raise NotMade(
-        "The shafts do not fit: in every arrangement one of them, or a part on it, would pass through a gear in "
-        "some speed. Try thinner shafts or another scale.", sizing.path,
+        compose("parts-shafts-obstructed-in-some-speed"), sizing.path,
     )  # fmt: skip
 
 
@@ -128,7 +131,8 @@ class _SlidingTask:
 
     def _make_wheel(self, stage: int, pair: int, role: str, teeth: int, level: int, centre: complex) -> Wheel:
         shaft, gear = stage + (role == "driven"), self.gears[teeth]
-        words = f"gear of stage {stage + 1}, pair {pair + 1}, {role}, {teeth} teeth"
+        message_id = "parts-pair-driver" if role == "driver" else "parts-pair-driven"
+        words = compose(message_id, stage=stage + 1, pair=pair + 1, teeth=teeth)
         return Wheel(
             f"gear_{stage + 1}_{pair + 1}_{role}", words, gear, shaft, level, centre, 0.0, gear.tip_radius,
             float(self.speeds[shaft]), 2 * stage + (role == "driven"), play=0.5 * self.sizes.clearance,
@@ -190,21 +194,21 @@ class _SlidingTask:
         """Make two gears that slide together, with a hub between them: one piece, or three if cut from sheets."""
         sizes, (lower, upper) = self.sizes, wheels
         name = f"{cluster.stage + 1}_{cluster.pairs[0] + 1}"
-        words = f"stage {cluster.stage + 1}, pairs {cluster.pairs[0] + 1} and {cluster.pairs[1] + 1}"
+        numbers = {"stage": cluster.stage + 1, "first": cluster.pairs[0] + 1, "second": cluster.pairs[1] + 1}
         bore = make_bore(lower.centre, sizes.pin, find_key(sizes.pin), sizes.clearance, towards)
         region = Region(Disc(lower.centre, measure_keyway_reach(sizes) + MIN_WALL_PER_PIN * sizes.pin), (bore,))
         hub = Prism(region, levels[lower.level].high, levels[upper.level].low)
         colour, carrier = LINK_COLOURS[lower.tint % len(LINK_COLOURS)], _make_carrier(lower.shaft)
-        material, planes = MATERIALS[sizes.process][0], (lower.level, upper.level)
+        material, planes = name_material(MATERIALS[sizes.process][0]), (lower.level, upper.level)
         # Sheets cannot form one piece: the hub is a separate part.
         if sizes.process == "laser":
             between = Part(
-                f"hub_{name}", f"hub between the gears of {words}", "wheel", carrier, (hub,), towards,
+                f"hub_{name}", compose("parts-cluster-hub", **numbers), "wheel", carrier, (hub,), towards,
                 (lower.level, lower.level), material, colour,
             )  # fmt: skip
             return [made[0], between, made[1]]
         bodies = (*made[0].bodies, hub, *made[1].bodies)
-        description = f"cluster of {words}, drivers, {lower.gear.teeth:g} and {upper.gear.teeth:g} teeth"
+        description = compose("parts-cluster", **numbers, lower=f"{lower.gear.teeth:g}", upper=f"{upper.gear.teeth:g}")
         return [Part(f"cluster_{name}", description, "gear", carrier, bodies, towards, planes, material, colour)]
 
     def _make_shaft(self, number: int, stand: Arrangement, towards: complex) -> Shaft:
@@ -218,7 +222,12 @@ class _SlidingTask:
         sliding = [
             (cluster.low, cluster.top) for cluster in self.clusters if cluster.slides and cluster.stage == number
         ]
-        name = {0: "input shaft", last: "output shaft"}.get(number, f"shaft {number + 1}")
+        if number == 0:
+            name = compose("parts-input-shaft")
+        elif number == last:
+            name = compose("parts-output-shaft")
+        else:
+            name = compose("parts-numbered-shaft", number=number + 1)
         return Shaft(
             name, _make_carrier(number), stand.axes[number], stand.reaches[number], tuple(keyed),
             ends=number in (0, last), below=number == 0, towards=towards, sliding=tuple(sliding),
@@ -226,40 +235,32 @@ class _SlidingTask:
 
     def _list_notes(self, levels: tuple[Level, ...], shafts: list[Shaft]) -> tuple[str, ...]:
         pairs = [
-            f"pair {engaged + 1} of stage {stage + 1}, {teeth[engaged][0]}/{teeth[engaged][1]}"
+            compose(
+                "parts-engaged-pair",
+                pair=engaged + 1,
+                stage=stage + 1,
+                driver=teeth[engaged][0],
+                driven=teeth[engaged][1],
+            )
             for stage, (teeth, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True))
         ]
         ratio = float(1 / abs(self.speeds[-1]))
-        notes = [f"{self.told}: {'; '.join(pairs)}; input over output {ratio:.6g}."]
+        notes = [compose("parts-speed-ratio", speed=self.told, pairs=join_messages(pairs, "; "), ratio=f"{ratio:.6g}")]
         if any(cluster.slides for cluster in self.clusters):
             step = levels[2].low - levels[1].low
             notes += [
-                "All speeds have the same parts in different positions: request another speed to see them.",
-                f"A cluster of two gears has three positions, {step:.4g} mm from each other along its feather key: "
-                "lower gear "
-                "in mesh, neutral, upper gear in mesh. A single sliding gear is in mesh in its lower position and "
-                "neutral "
-                "in the upper one. First move every other cluster of the stage to neutral, at rest: turn the "
-                "shafts until teeth face spaces.",
-                "The ends of the feather keys retain the neighbouring parts on the shaft: put on spacers, keys and "
-                "gears in the order of their positions. Forks, levers and detents that shift the gears are not "
-                "included.",
+                compose("parts-other-speeds"),
+                compose("parts-cluster-positions", step=f"{step:.4g}"),
+                compose("parts-feather-keys-retain"),
             ]
             doubles = any(cluster.slides and len(cluster.pairs) > 1 for cluster in self.clusters)
             if doubles and self.sizes.process == "laser":
-                notes.append(
-                    "The gears of a two-gear cluster and the hub between them are bonded or screwed together; each "
-                    "gear is keyed, so that the joint transmits no torque. A fork fits between the gears."
-                )
+                notes.append(compose("parts-cluster-bonded"))
             elif doubles:
-                notes.append(
-                    "A two-gear cluster is one piece with the hub between them, around which a fork fits; its "
-                    "DXF file contains only the outline of the larger gear."
-                )
+                notes.append(compose("parts-cluster-one-piece"))
         for shaft in shafts:
             if shaft.reach != (0, self.highest + 1):
-                plate = "lower" if shaft.reach[0] == 0 else "upper"
-                notes.append(f"The {shaft.name} is held only by the {plate} plate.")
+                notes.append(describe_support(shaft.name, lower=shaft.reach[0] == 0))
         return tuple(notes)
 
 

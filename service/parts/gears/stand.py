@@ -53,6 +53,8 @@ class Wheel(NamedTuple):
         Reduction of tooth thickness on the pitch circle, millimetres.
     top : int or None
         Highest level of a gear that extends over several.
+    web_described : str
+        Description of the disc that holds a ring.
     """
 
     name: str
@@ -69,6 +71,7 @@ class Wheel(NamedTuple):
     web: int | None = None
     play: float = 0.0
     top: int | None = None
+    web_described: str = ""
 
     @property
     def levels(self) -> tuple[int, ...]:

@@ -14,7 +14,9 @@ import numpy as np
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import BASE_COLOUR
+from service.parts.assembly.descriptions import name_material
 from service.parts.assembly.fasteners import MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.model import Carrier, Frame, Part, simplify_name
 from service.parts.assembly.sizes import Sizes
@@ -156,13 +158,13 @@ class UprightHousing:
         name = f"bearing_{axle.number + 1}_{number}"
         return Part(
             name=name,
-            described=f"bearing plate of the {axle.name}",
+            described=compose("parts-bearing-plate", shaft=axle.name),
             sort="base",
             carrier=axle.stand,
             bodies=(Prism(Region(outer, (Disc(0j, 0.5 * sizes.hole),)), level.low, level.high),),
             along=1j,
             planes=(BEARING_PLANE, BEARING_PLANE),
-            material=MATERIALS[sizes.process][0],
+            material=name_material(MATERIALS[sizes.process][0]),
             colour=BASE_COLOUR,
             like=f"bearing_{axle.number + 1}",
         )
@@ -195,13 +197,13 @@ class UprightHousing:
         holes += [self._make_slot(axle, level) for axle in self.axles for level in axle.plates]
         return Part(
             name="base",
-            described="base",
+            described=compose("parts-base"),
             sort="base",
             carrier=Carrier(GROUND, None),
             bodies=(Prism(Region(Loop(corners, (0.0,) * 4), tuple(holes)), self.below - sizes.thickness, self.below),),
             along=1.0 + 0.0j,
             planes=(BASE_PLANE, BASE_PLANE),
-            material=MATERIALS[sizes.process][0],
+            material=name_material(MATERIALS[sizes.process][0]),
             colour=BASE_COLOUR,
         )
 

@@ -10,7 +10,9 @@ import math
 from collections.abc import Sequence
 
 from kinematics.gear.teeth import Gear
+from kinematics.message import compose, make_sentence
 from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.descriptions import name_material, name_part
 from service.parts.assembly.fasteners import MATERIALS, make_fillers, make_pin
 from service.parts.assembly.interference import find_overlaps, find_thin_walls
 from service.parts.assembly.keys import find_key, make_bore
@@ -86,9 +88,17 @@ def make_wheel_parts(
 
     def make_part(name: str, described: str, bodies: tuple[Body, ...], level: int) -> Part:
         return Part(
-            name, described, "gear", carrier, bodies, towards, (level, level), MATERIALS[sizes.process][0],
-            LINK_COLOURS[wheel.tint % len(LINK_COLOURS)], like=like,
-        )  # fmt: skip
+            name,
+            described,
+            "gear",
+            carrier,
+            bodies,
+            towards,
+            (level, level),
+            name_material(MATERIALS[sizes.process][0]),
+            LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
+            like=like,
+        )
 
     if wheel.web is None:
         body: Body = Prism(Region(teeth, (bore,)), low, high)
@@ -108,7 +118,7 @@ def make_wheel_parts(
     parts = [
         make_part(wheel.name, wheel.described, (Prism(Region(disc, (teeth, *holes)), low, high),), wheel.level),
         make_part(
-            f"web_{wheel.name.split('_', 1)[1]}", f"web of the {wheel.described.split(' of ')[0]}",
+            f"web_{wheel.name.split('_', 1)[1]}", wheel.web_described,
             (Prism(Region(disc, (bore, *holes)), web.low, web.high),), wheel.web,
         ),
     ]  # fmt: skip
@@ -116,7 +126,7 @@ def make_wheel_parts(
     for number, place in enumerate(places, 1):
         name = f"{wheel.name}_{number}"
         ends = levels[lower].low, levels[upper].high
-        parts += make_pin(name, f"rim {number}", carrier, place, ends, (lower, upper), joint)
+        parts += make_pin(name, compose("parts-rim-pin", number=number), carrier, place, ends, (lower, upper), joint)
         gap = levels[lower].high, levels[upper].low
         parts += make_fillers(name, carrier, place, gap, (lower, upper), joint, washers=False)
     return parts
@@ -132,19 +142,28 @@ def check_assembly(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Asse
     """
     thin = find_thin_walls(assembly, 0.99 * MIN_WALL_PER_PIN * sizes.pin)
     if thin:
-        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too thin walls around its holes.", sizing.path)
+        fault = compose("parts-walls-too-thin", part=name_part(thin[0].part))
+        raise NotMade(make_sentence(fault), sizing.path)
     meeting = find_overlaps(assembly)
     if meeting:
-        one, other = (name.replace("_", " ") for name in meeting[0].parts)
+        one, other = (name_part(name) for name in meeting[0].parts)
         # Colliding teeth are a matter of play, not of space.
         if all(part.sort == "gear" for part in assembly.parts if part.name in meeting[0].parts):
             raise NotMade(
-                f"Teeth of the {one} and the {other} collide at an input angle of {math.degrees(meeting[0].at):.1f}° "
-                f"with this play; try a clearance above {sizes.clearance / sizing.unit:.4g} {sizing.words}.",
+                compose(
+                    "parts-teeth-collide",
+                    first=one,
+                    second=other,
+                    angle=f"{math.degrees(meeting[0].at):.1f}",
+                    clearance=f"{sizes.clearance / sizing.unit:.4g}",
+                    unit=sizing.words,
+                ),
                 "/query/clearance",
             )
         raise NotMade(
-            f"The parts do not fit: the {one} and the {other} collide at an input angle of "
-            f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
-        )  # fmt: skip
+            compose(
+                "parts-parts-collide-at-angle", first=one, second=other, angle=f"{math.degrees(meeting[0].at):.1f}"
+            ),
+            sizing.path,
+        )
     return assembly

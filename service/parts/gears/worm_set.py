@@ -18,6 +18,8 @@ from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from kinematics.gear.worm import WormDrive
+from kinematics.message import compose
+from service.parts.assembly.descriptions import name_material
 from service.parts.assembly.fasteners import MATERIALS
 from service.parts.assembly.model import Assembly, Part
 from service.parts.assembly.sizes import NotMade, Sizes
@@ -66,7 +68,7 @@ def make_worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | N
         try:
             return _WormSet(stage, drive, wide, play, sizes, sizing).build_assembly()
         except DimensionError as error:
-            raise NotMade(f"The gears cannot be cut: {error}.") from None
+            raise NotMade(compose("parts-gears-cannot-be-cut", reason=str(error))) from None
         except NotMade as error:
             refused = error
     assert refused is not None
@@ -114,19 +116,48 @@ class _WormSet:
         # The worm's bearing plates clear the gear, and the gear's clear the worm.
         beside = max(gear.tip_radius**2 - max(distance - half - apart, 0.0) ** 2, 0.0)
         axles = (
-            self._make_axle(0, "worm shaft", length, max(0.5 * length + sizes.gap, math.sqrt(beside) + apart)),
-            self._make_axle(1, "output shaft", self.face_width,
-                       max(0.5 * self.face_width + sizes.gap, worm.tip_radius + apart)),
-        )  # fmt: skip
+            self._make_axle(
+                0, compose("parts-worm-shaft"), length, max(0.5 * length + sizes.gap, math.sqrt(beside) + apart)
+            ),
+            self._make_axle(
+                1,
+                compose("parts-output-shaft"),
+                self.face_width,
+                max(0.5 * self.face_width + sizes.gap, worm.tip_radius + apart),
+            ),
+        )
         below = max(worm.tip_radius, half, 0.5 * sizes.collar) + apart + FLOOR_CLEARANCE * sizes.pin
         ratio = abs(axles[1].speed)
         wheels = (
-            Wheel("worm_1_driver", f"worm, {self.drive.threads} threads", worm, 0, FIRST_SHAFT_PLANE, 0j, 0.5 * math.pi,
-                  worm.tip_radius, 1.0, 0, self.hand * (0.5 * math.pi - lead), play=self.play / math.tan(lead)),
-            Wheel("gear_1_driven", f"worm gear, {self.drive.gear_teeth} teeth", gear, 1, FIRST_SHAFT_PLANE + 1, 0j,
-                  -0.5 * math.pi + math.pi / self.drive.gear_teeth, gear.tip_radius, ratio, 1, self.hand * lead,
-                  play=self.play),
-        )  # fmt: skip
+            Wheel(
+                "worm_1_driver",
+                compose("parts-worm", count=self.drive.threads),
+                worm,
+                0,
+                FIRST_SHAFT_PLANE,
+                0j,
+                0.5 * math.pi,
+                worm.tip_radius,
+                1.0,
+                0,
+                self.hand * (0.5 * math.pi - lead),
+                play=self.play / math.tan(lead),
+            ),
+            Wheel(
+                "gear_1_driven",
+                compose("parts-worm-gear", teeth=self.drive.gear_teeth),
+                gear,
+                1,
+                FIRST_SHAFT_PLANE + 1,
+                0j,
+                -0.5 * math.pi + math.pi / self.drive.gear_teeth,
+                gear.tip_radius,
+                ratio,
+                1,
+                self.hand * lead,
+                play=self.play,
+            ),
+        )
         parts: list[Part] = []
         # Dummy levels for the planes of base and bearings.
         levels = [Level(0.0, 0.0)] * FIRST_SHAFT_PLANE + [axle.levels[axle.wheel] for axle in axles]
@@ -161,15 +192,18 @@ class _WormSet:
     def _choose_material(self, axle: Axle) -> str:
         """Return the material: a steel worm and a bronze gear, unless they are printed."""
         if self.sizes.process == "print" or axle.number == 0:
-            return MATERIALS[self.sizes.process][1]
-        return "bronze"
+            return name_material(MATERIALS[self.sizes.process][1])
+        return name_material("bronze")
 
     def _list_notes(self, worm: Gear, gear: Gear) -> tuple[str, ...]:
         return (
-            f"Centre distance of the crossing shafts {self.drive.centre_distance:.6g} mm; lead angle "
-            f"{math.degrees(self.drive.lead_angle):.4g}°, {'left' if self.stage.left_handed else 'right'}-handed; "
-            f"outside diameters {2.0 * worm.tip_radius:.6g} and {2.0 * gear.tip_radius:.6g} mm.",
-            "The gear is cylindrical, with helical teeth that touch the thread in a point: it transmits the exact "
-            "ratio, but carries less load than a gear hobbed to the worm.",
-            "Glue or wedge the tabs of the bearing plates into the slots of the base.",
+            compose(
+                "parts-worm-left-handed" if self.stage.left_handed else "parts-worm-right-handed",
+                distance=f"{self.drive.centre_distance:.6g}",
+                lead=f"{math.degrees(self.drive.lead_angle):.4g}",
+                worm=f"{2.0 * worm.tip_radius:.6g}",
+                gear=f"{2.0 * gear.tip_radius:.6g}",
+            ),
+            compose("parts-worm-gear-cylindrical"),
+            compose("parts-glue-bearing-plates"),
         )

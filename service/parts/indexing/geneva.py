@@ -23,7 +23,9 @@ from kinematics.indexing.locking import Disc as LockingDisc
 from kinematics.indexing.locking import build_disc
 from kinematics.indexing.wheel import Wheel
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import BLOCK_COLOUR, LINK_COLOURS
+from service.parts.assembly.descriptions import describe_identifier, describe_name
 from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault
 from service.parts.assembly.model import Assembly, Carrier, Part, Placement
 from service.parts.assembly.plate_stack import GROUND_CARRIER, PlateStack
@@ -98,10 +100,7 @@ def make_geneva_parts(design: IndexingDesign, problem: IndexingProblem, query: P
     mechanism = design.mechanism
     assert isinstance(mechanism, GenevaMechanism)
     if mechanism.drag_link is not None:
-        raise NotMade(
-            "Parts are only available for Geneva drives whose crank is the input; the coupler of this drag link would "
-            "collide with the shafts on both sides."
-        )
+        raise NotMade(compose("parts-geneva-with-drag-link"))
     return _GenevaFitting(mechanism, problem, query).build_assembly()
 
 
@@ -124,14 +123,20 @@ class _GenevaFitting(Fitting):
         """Build the assembly in these sizes."""
         builder = _Builder(self._mechanism, self._problem, sizes, self._unit * scale)
         if builder.wheel.land <= 0.0 or not builder.wheel.web > 0.0:
-            return Trial(None, "slots with this clearance do not fit into the wheel")
+            return Trial(None, compose("parts-slots-do-not-fit"))
         least, needed = builder.measure_shaft_clearance()
         if least < needed:
-            return Trial(None, (
-                f"the locking disc reaches {least / self._unit:.4g} {self._words} from its axis where the wheel passes "
-                f"it, but the bore for the crankshaft with its key needs {needed / self._unit:.4g}; use a thinner "
-                "crankshaft or a larger center distance"
-            ))  # fmt: skip
+            return Trial(
+                None,
+                (
+                    compose(
+                        "parts-locking-disc-too-small",
+                        reach=f"{least / self._unit:.4g}",
+                        unit=self._words,
+                        needed=f"{needed / self._unit:.4g}",
+                    )
+                ),
+            )
         assembly = builder.build_assembly(scale)
         fault = find_fault(assembly, sizes)
         return Trial(None, fault) if fault else Trial(assembly, "")
@@ -177,8 +182,8 @@ class _Builder:
         motion = GenevaMotion(
             self._measure_size(), self._course, self._mechanism.rollers, self._axis, 1.0 if self._internal else -1.0
         )
-        notes = ("The input is the crank; at an input angle of 0 a roller enters a slot.",
-                 "All rotating parts are keyed to their shafts, which protrude beyond the bases.")  # fmt: skip
+        notes = (compose("parts-geneva-input"),
+                 compose("parts-geneva-keyed"))  # fmt: skip
         return Assembly(tuple(parts), motion, planes, 2 if self._internal else 1, self._factor, scale, notes)
 
     def _measure_size(self) -> float:
@@ -207,8 +212,16 @@ class _Builder:
         holes += [Disc(z, 0.5 * self._sizes.hole) for z in self._place_crescent_pins()]
         if self._place_crescent_pins():
             shape = widen_hull([self._axis, *self._rollers, *self._place_crescent_pins()], half)
-        return self._stack.make_plate("crank", "crank", "link", ON_CRANK, Region(shape, tuple(holes)), plane,
-                                      CRANK_COLOUR, self._way)  # fmt: skip
+        return self._stack.make_plate(
+            "crank",
+            compose("parts-crank"),
+            "link",
+            ON_CRANK,
+            Region(shape, tuple(holes)),
+            plane,
+            CRANK_COLOUR,
+            self._way,
+        )
 
     def _get_shaft_width(self, diameter: float) -> float:
         """Return the width of a plate around a shaft."""
@@ -221,9 +234,9 @@ class _Builder:
             name = "roller" if len(self._rollers) == 1 else f"roller_{n}"
             region = make_ring(z, self._roller, 0.5 * self._sizes.hole)
             parts.append(
-                stack.make_plate(name, name.replace("_", " "), "block", ON_CRANK, region, plane, ROLLER_COLOUR)
+                stack.make_plate(name, describe_identifier(name), "block", ON_CRANK, region, plane, ROLLER_COLOUR)
             )
-            parts += stack.make_pin(name, f"pin {name.replace('_', ' ')}", ON_CRANK, z, (plane, crank))
+            parts += stack.make_pin(name, describe_identifier(f"pin_{name}"), ON_CRANK, z, (plane, crank))
             parts += stack.make_fillers(name, ON_CRANK, z, [(plane, crank)])
         return parts
 
@@ -234,15 +247,31 @@ class _Builder:
         wheel = Region(self._make_wheel_outline(), (self._make_bore(0j, self._wheel_shaft),))
         locking = Region(self._make_disc(), (self._make_bore(self._axis, self._crank_shaft),))
         parts = [
-            stack.make_plate("wheel", "wheel", "link", ON_WHEEL, wheel, 1, WHEEL_COLOUR),
-            stack.make_plate("locking_disc", "locking disc", "link", ON_CRANK, locking, 1, DISC_COLOUR),
+            stack.make_plate("wheel", compose("parts-wheel"), "link", ON_WHEEL, wheel, 1, WHEEL_COLOUR),
+            stack.make_plate("locking_disc", compose("parts-locking-disc"), "link", ON_CRANK, locking, 1, DISC_COLOUR),
             self._make_crank(2),
             *self._make_rollers(1, 2),
-            *stack.make_pin("wheel", "wheel shaft", ON_WHEEL, 0j, (0, 1), diameter=self._wheel_shaft, keyed=(1,),
-                            stub=-1),
-            *stack.make_pin("crank", "crankshaft", ON_CRANK, self._axis, (0, 2), diameter=self._crank_shaft,
-                            keyed=(1, 2), stub=-1),
-        ]  # fmt: skip
+            *stack.make_pin(
+                "wheel",
+                compose("parts-wheel-shaft"),
+                ON_WHEEL,
+                0j,
+                (0, 1),
+                diameter=self._wheel_shaft,
+                keyed=(1,),
+                stub=-1,
+            ),
+            *stack.make_pin(
+                "crank",
+                compose("parts-crankshaft"),
+                ON_CRANK,
+                self._axis,
+                (0, 2),
+                diameter=self._crank_shaft,
+                keyed=(1, 2),
+                stub=-1,
+            ),
+        ]
         spans = [(0, 1)] if sizes.process != "print" else []
         parts += stack.make_fillers("wheel", ON_WHEEL, 0j, spans, self._wheel_shaft)
         parts += stack.make_fillers("crank", ON_CRANK, self._axis, [*spans, (1, 2)], self._crank_shaft)
@@ -265,22 +294,45 @@ class _Builder:
         crescent = Region(self._make_crescent(), tuple(Disc(z, 0.5 * sizes.hole) for z in self._place_crescent_pins()))
         plate = Region(outside, (self._make_bore(0j, self._wheel_shaft), *holes))
         parts = [
-            stack.make_plate("wheel_plate", "plate of the wheel", "link", ON_WHEEL, plate, 1, LINK_COLOURS[6]),
-            stack.make_plate("wheel", "wheel, a ring", "link", ON_WHEEL,
-                             Region(outside, (self._make_wheel_outline(), *holes)), 2, WHEEL_COLOUR),
-            stack.make_plate("crescent", "locking crescent", "link", ON_CRANK, crescent, 2, DISC_COLOUR),
+            stack.make_plate("wheel_plate", compose("parts-wheel-plate"), "link", ON_WHEEL, plate, 1, LINK_COLOURS[6]),
+            stack.make_plate(
+                "wheel",
+                compose("parts-wheel-ring"),
+                "link",
+                ON_WHEEL,
+                Region(outside, (self._make_wheel_outline(), *holes)),
+                2,
+                WHEEL_COLOUR,
+            ),
+            stack.make_plate("crescent", compose("parts-locking-crescent"), "link", ON_CRANK, crescent, 2, DISC_COLOUR),
             self._make_crank(3),
             *self._make_rollers(2, 3),
-            *stack.make_pin("wheel", "wheel shaft", ON_WHEEL, 0j, (0, 1), diameter=self._wheel_shaft, keyed=(1,),
-                            stub=-1),
-            *stack.make_pin("crank", "crankshaft", ON_CRANK, self._axis, (3, 4), diameter=self._crank_shaft, keyed=(3,),
-                            stub=1),
-        ]  # fmt: skip
+            *stack.make_pin(
+                "wheel",
+                compose("parts-wheel-shaft"),
+                ON_WHEEL,
+                0j,
+                (0, 1),
+                diameter=self._wheel_shaft,
+                keyed=(1,),
+                stub=-1,
+            ),
+            *stack.make_pin(
+                "crank",
+                compose("parts-crankshaft"),
+                ON_CRANK,
+                self._axis,
+                (3, 4),
+                diameter=self._crank_shaft,
+                keyed=(3,),
+                stub=1,
+            ),
+        ]
         for n, z in enumerate(dowels, 1):
-            parts += stack.make_pin(f"dowel_{n}", f"pin dowel {n}", ON_WHEEL, z, (1, 2))
+            parts += stack.make_pin(f"dowel_{n}", compose("parts-dowel-pin", number=n), ON_WHEEL, z, (1, 2))
             parts += stack.make_fillers(f"dowel_{n}", ON_WHEEL, z, [(1, 2)])
         for n, z in enumerate(self._place_crescent_pins(), 1):
-            parts += stack.make_pin(f"crescent_{n}", f"pin crescent {n}", ON_CRANK, z, (2, 3))
+            parts += stack.make_pin(f"crescent_{n}", compose("parts-crescent-pin", number=n), ON_CRANK, z, (2, 3))
             parts += stack.make_fillers(f"crescent_{n}", ON_CRANK, z, [(2, 3)])
         if sizes.process != "print":
             parts += stack.make_fillers("wheel", ON_WHEEL, 0j, [(0, 1)], self._wheel_shaft)
@@ -295,7 +347,7 @@ class _Builder:
         posts = [far * cmath.exp(0.25j * math.pi * (2 * n + 1)) for n in range(4)]
         parts: list[Part] = []
         for n, z in enumerate(posts, 1):
-            parts += stack.make_pin(f"post_{n}", f"post {n}", GROUND_CARRIER, z, (0, 4))
+            parts += stack.make_pin(f"post_{n}", describe_name(f"post {n}"), GROUND_CARRIER, z, (0, 4))
             parts += stack.make_fillers(f"post_{n}", GROUND_CARRIER, z, [(0, 4)])
         outer = widen_hull([*posts, self._axis], 0.5 * sizes.width)
         held = [Disc(z, 0.5 * sizes.hole) for z in posts]

@@ -16,7 +16,9 @@ import shapely
 from kinematics.arrays import Real
 from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import LINK_COLOURS
+from service.parts.assembly.descriptions import describe_identifier
 from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault
 from service.parts.assembly.model import Assembly, Carrier, Part, Placement
 from service.parts.assembly.plate_stack import GROUND_CARRIER, PlateStack
@@ -119,7 +121,7 @@ class _RatchetFitting(Fitting):
         # An outline that crosses itself is no part.
         around = make_polygon(pawl.region.outer, beyond=True)
         if not shapely.Polygon(np.column_stack([around.real, around.imag])).is_valid:
-            return Trial(None, "the round end of a pawl about its pivot would overlap its nose")
+            return Trial(None, compose("parts-pawl-overlaps-nose"))
         fault = find_fault(assembly, sizes)
         return Trial(None, fault) if fault else Trial(assembly, "")
 
@@ -150,8 +152,10 @@ class _Builder:
         wheel = Region(Loop(corners, (0.0,) * len(corners)), (stack.make_bore(0j, self._shaft),))
         names = ["pawl"] if len(self._pawls) == 1 else [f"pawl_{n}" for n in range(1, len(self._pawls) + 1)]
         parts = [
-            stack.make_plate("wheel", "ratchet wheel", "link", ON_WHEEL, wheel, 1, WHEEL_COLOUR),
-            *stack.make_pin("wheel", "wheel shaft", ON_WHEEL, 0j, (0, 1), diameter=self._shaft, keyed=(1,), stub=-1),
+            stack.make_plate("wheel", compose("parts-ratchet-wheel"), "link", ON_WHEEL, wheel, 1, WHEEL_COLOUR),
+            *stack.make_pin(
+                "wheel", compose("parts-wheel-shaft"), ON_WHEEL, 0j, (0, 1), diameter=self._shaft, keyed=(1,), stub=-1
+            ),
         ]
         for number, name in enumerate(names):
             parts += self._make_pawl(name, number, float(motion.compute_lift(number, np.zeros(1))[0]))
@@ -161,9 +165,9 @@ class _Builder:
         holes = [Disc(0j, 0.5 * stack.get_sizes(self._shaft).hole), *(Disc(z, 0.5 * sizes.hole) for z in self._pivots)]
         bosses = [(0j, self._shaft, 1), *((z, sizes.pin, 1) for z in self._pivots)]
         parts.append(stack.make_base("base", widen_hull([0j, *self._pivots], half), holes, bosses))
-        notes = ("The input is the wheel's angle, counter-clockwise, from the stop of the first pawl.",
-                 "Springs or weights must press the pawls on the teeth; they are not included.",
-                 "The wheel is keyed to its shaft, which protrudes below the base.")  # fmt: skip
+        notes = (compose("parts-ratchet-input"),
+                 compose("parts-pawls-need-force"),
+                 compose("parts-ratchet-keyed"))  # fmt: skip
         touching = frozenset(frozenset(("wheel", name)) for name in names)
         return Assembly(tuple(parts), motion, 1, 1, self._factor, scale, notes, touching)
 
@@ -177,9 +181,11 @@ class _Builder:
         along = turn * (self._ratchet.foot - self._ratchet.pivot)
         carrier = Carrier(f"{PAWL_LINK}{number + 1}", None)
         parts = [
-            stack.make_plate(name, name.replace("_", " "), "link", carrier, region, 1, PAWL_COLOUR, along / abs(along))
+            stack.make_plate(
+                name, describe_identifier(name), "link", carrier, region, 1, PAWL_COLOUR, along / abs(along)
+            )
         ]
-        parts += stack.make_pin(name, f"pin {name.replace('_', ' ')}", GROUND_CARRIER, pivot, (0, 1))
+        parts += stack.make_pin(name, describe_identifier(f"pin_{name}"), GROUND_CARRIER, pivot, (0, 1))
         if self._sizes.process != "print":
             parts += stack.make_fillers(name, GROUND_CARRIER, pivot, [(0, 1)])
         return parts
@@ -195,9 +201,7 @@ class _Builder:
         closing = float((wheel + ratchet.pawl_lift(wheel)).max()) + math.radians(MIN_NOSE_CLEARANCE)
         inner = back / abs(back) * cmath.exp(1j * closing)
         if cmath.phase(face / inner) < math.radians(MIN_NOSE_ANGLE):
-            raise NotMade(
-                "The wheel has too few teeth for a one-piece pawl: its nose would collide with the tooth behind."
-            )
+            raise NotMade(compose("parts-too-few-teeth-for-pawl"))
         # From the foot out of the tip circle, and on to the pivot.
         out = ratchet.radius + self._sizes.min_gap
         along = (foot * inner.conjugate()).real

@@ -18,9 +18,11 @@ import numpy as np
 from kinematics.arrays import Real
 from kinematics.indexing.drag_link import CrankCourse
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.message import compose
 from service.parts.assembly.colours import BLOCK_COLOUR, LINK_COLOURS
+from service.parts.assembly.descriptions import name_material, name_part
 from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PIN_COLOUR
-from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault, name_part
+from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.keys import find_key, make_bore
 from service.parts.assembly.model import Assembly, Carrier, Development, Frame, Part, Placement, Sort
@@ -155,8 +157,9 @@ class _SphericalFitting(Fitting):
         if meeting:
             one, other = (name_part(part) for part in meeting[0].parts)
             raise NotMade(
-                f"The parts do not fit: {one} and {other} collide at an input angle of "
-                f"{math.degrees(meeting[0].at):.1f}°."
+                compose(
+                    "parts-parts-collide-at-angle", first=one, second=other, angle=f"{math.degrees(meeting[0].at):.1f}"
+                )
             )
         return made
 
@@ -209,21 +212,21 @@ class _Builder:
         """Return the reason why something does not fit in the wheel or on the crank, or an empty string."""
         wall, inside, end = MIN_WALL_PER_PIN * self._sizes.pin, self._inside, self._slot_end
         if not 0.5 * self._sizes.collar < self._roller:
-            return "the roller is not wider than the fastener of its pin"
+            return compose("parts-roller-too-narrow")
         if inside * math.sin(self._step - self._lock) - self._half_slot < wall:
-            return "the shell is so thick that the wall between slot and locking hollow is too thin at its inside"
+            return compose("parts-shell-wall-beside-slot")
         if 2.0 * (inside * math.cos(end) * math.sin(self._step) - self._half_slot) < wall:
-            return "the shell is so thick that the wall between its slots is too thin at its inside"
+            return compose("parts-shell-wall-between-slots")
         if not self._flat < inside or not self._hub < self._outside:
-            return "the wheel's shaft is thicker than the wheel"
+            return compose("parts-wheel-shaft-too-thick")
         places = (self._hub, math.sqrt(self._outside**2 - self._hub**2)), (self._flat, self._floor)
         if min(height * math.cos(end) - radius * math.sin(end) for radius, height in places) < self._half_slot + wall:
-            return "the hub and shaft of the wheel do not fit between the ends of the slots"
+            return compose("parts-hub-between-slots")
         cap = self._cap_begins * math.tan(max(self._cap, 0.0))
         if cap < max(self._pocket + wall, self._cap_offset):
-            return "the locking cap does not fit around the end of the crankshaft"
+            return compose("parts-cap-around-crankshaft")
         if self._disc[0] * math.tan(self._cone) - 0.5 * self._sizes.hole / math.cos(self._cone) < self._pocket + wall:
-            return "the roller's pin does not fit in the crank next to the crankshaft"
+            return compose("parts-roller-pin-beside-crankshaft")
         return ""
 
     @property
@@ -262,7 +265,9 @@ class _Builder:
         """Make crankshaft and wheel shaft, each with its wheel next to the centre."""
         top = max(self._floor + MIN_BORE_LENGTH * self._shafts[1].pin, self._outside + self._sizes.min_gap)
         levels, found = (self._disc, (self._floor, top)), []
-        for number, (name, sizes) in enumerate(zip(("crankshaft", "wheel shaft"), self._shafts, strict=True)):
+        for number, (name, sizes) in enumerate(
+            zip((compose("parts-crankshaft"), compose("parts-wheel-shaft")), self._shafts, strict=True)
+        ):
             near = levels[number][1] + sizes.gap
             far = near + sizes.thickness + max(BEARING_SPAN * sizes.pin, sizes.gap)
             ends = levels[number], (near, near + sizes.thickness), (far, far + sizes.thickness)
@@ -291,8 +296,15 @@ class _Builder:
             cuts.append(SlotCut(at, self._slot_end, self._half_slot, open=True))
             cuts.append(ConeCut(at + self._step, self._lock))
         body = CutBody(profile, tuple(cuts))
-        return self._make_part("wheel", "wheel, half a sphere", Carrier(WHEEL_LINK, None), (body,), LINK_COLOURS[1], 1,
-                          self._make_development())  # fmt: skip
+        return self._make_part(
+            "wheel",
+            compose("parts-hemisphere-wheel"),
+            Carrier(WHEEL_LINK, None),
+            (body,),
+            LINK_COLOURS[1],
+            1,
+            self._make_development(),
+        )
 
     def _make_crank(self) -> Part:
         """Make the disc with its inclined hole, and the cap opposite the roller."""
@@ -314,14 +326,14 @@ class _Builder:
             CutBody(Loop(cap, (0.0,) * 5), (HalfSpaceCut(0.5 * math.pi, self._cap_offset),)),
         )
         return self._make_part(
-            "crank", "crank with its locking cap", Carrier(CRANK_LINK, None), bodies, LINK_COLOURS[0], 0
+            "crank", compose("parts-crank-with-cap"), Carrier(CRANK_LINK, None), bodies, LINK_COLOURS[0], 0
         )
 
     def _make_part(
         self, name: str, described: str, carrier: Carrier, bodies: tuple[Body, ...], colour: str, number: int,
         unrolled: Development | None = None,
     ) -> Part:  # fmt: skip
-        material = MATERIALS["print" if self._sizes.process == "print" else "mill"][0]
+        material = name_material(MATERIALS["print" if self._sizes.process == "print" else "mill"][0])
         plane = FIRST_SHAFT_PLANE + number
         return Part(name, described, "cam", carrier, bodies, 1.0 + 0.0j, (plane, plane), material, colour,
                     unrolled=unrolled)  # fmt: skip
@@ -334,7 +346,7 @@ class _Builder:
         # Neither the spacer nor the end of the pin protrudes from a face of the disc.
         spacer = high + sizes.play, (self._disc[0] - collar * sine) / cosine
         end = (self._disc[1] - shank * sine) / cosine
-        steel = MATERIALS[sizes.process][1]
+        steel = name_material(MATERIALS[sizes.process][1])
         bottom = low - sizes.play
 
         def make_part(
@@ -345,9 +357,19 @@ class _Builder:
             )  # fmt: skip
 
         found = [
-            make_part("roller", "roller", "block", [Prism(make_ring(0j, self._roller, hole), low, high)], BLOCK_COLOUR),
             make_part(
-                "spacer_roller", "spacer", "spacer", [Prism(make_ring(0j, collar, hole), *spacer)], FASTENER_COLOUR
+                "roller",
+                compose("parts-roller"),
+                "block",
+                [Prism(make_ring(0j, self._roller, hole), low, high)],
+                BLOCK_COLOUR,
+            ),
+            make_part(
+                "spacer_roller",
+                compose("parts-spacer"),
+                "spacer",
+                [Prism(make_ring(0j, collar, hole), *spacer)],
+                FASTENER_COLOUR,
             ),
         ]
         if sizes.process == "print":
@@ -359,12 +381,17 @@ class _Builder:
             around = Prism(make_ring(0j, 0.5 * held.diameter, groove), bottom - held.thickness, bottom)
             found.append(
                 make_part(
-                    "ring_roller", "retaining ring of pin roller", "ring", [around], FASTENER_COLOUR, held.standard
+                    "ring_roller",
+                    compose("parts-retaining-ring", pin=compose("parts-roller-pin")),
+                    "ring",
+                    [around],
+                    FASTENER_COLOUR,
+                    held.standard,
                 )
             )
         bodies = [Prism(make_ring(0j, radius), a, b) for radius, a, b in stack]
         sold = "" if sizes.process == "print" else name_bar(sizes.pin)
-        return [*found, make_part("pin_roller", "pin roller", "pin", bodies, PIN_COLOUR, sold)]
+        return [*found, make_part("pin_roller", compose("parts-roller-pin"), "pin", bodies, PIN_COLOUR, sold)]
 
     def _make_development(self) -> Development:
         """Return the outside of the wheel: azimuth and latitude, both times the radius."""
@@ -400,14 +427,21 @@ class _Builder:
 
     def _list_notes(self) -> tuple[str, ...]:
         return (
-            f"The wheel is a shell from {2.0 * self._inside:.6g} to {2.0 * self._outside:.6g} mm in diameter; slots "
-            f"{2.0 * self._half_slot:.6g} mm wide, up to {math.degrees(self._slot_end):.5g}° above the rim, and "
-            f"hollows of {math.degrees(self._lock):.5g}° are milled with tools that point to its centre.",
-            f"Press or glue the roller's pin into the hole of the crank, {math.degrees(self._cone):.6g}° from "
-            f"its axis; it points to the centre. The locking cap has {math.degrees(self._cap):.5g}°, and ends "
-            f"{self._cap_offset:.5g} mm from the axis.",
-            "The drawing of the wheel shows its outside by azimuth and latitude, both times the radius: true to scale "
-            "along meridians and at the rim.",
-            "The input is the crank; at an input angle of 0 the roller enters a slot.",
-            "Glue or wedge the tabs of the bearing plates into the slots of the base.",
+            compose(
+                "parts-spherical-wheel-dimensions",
+                inner=f"{2.0 * self._inside:.6g}",
+                outer=f"{2.0 * self._outside:.6g}",
+                width=f"{2.0 * self._half_slot:.6g}",
+                slot=f"{math.degrees(self._slot_end):.5g}",
+                hollow=f"{math.degrees(self._lock):.5g}",
+            ),
+            compose(
+                "parts-spherical-crank-dimensions",
+                angle=f"{math.degrees(self._cone):.6g}",
+                cap=f"{math.degrees(self._cap):.5g}",
+                offset=f"{self._cap_offset:.5g}",
+            ),
+            compose("parts-spherical-wheel-drawing"),
+            compose("parts-spherical-input"),
+            compose("parts-glue-bearing-plates"),
         )

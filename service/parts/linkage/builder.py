@@ -17,7 +17,9 @@ import numpy as np
 
 from kinematics.linkage.layout import Division, Piece, list_pieces
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose, join_messages
 from service.parts.assembly.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
+from service.parts.assembly.descriptions import describe_identifier, describe_name, name_material
 from service.parts.assembly.fasteners import FASTENER_COLOUR, MATERIALS, PinShape, make_fillers, make_pin
 from service.parts.assembly.keys import find_key, make_bore, make_key_section, make_shaft_section
 from service.parts.assembly.model import Assembly, Carrier, Part, simplify_name
@@ -109,10 +111,16 @@ def build_assembly(
 def _list_notes(wheels: Sequence[PairWheel]) -> tuple[str, ...]:
     if not wheels:
         return ()
-    teeth = ", ".join(f"{round(wheel.gear.teeth)} of the {wheel.name}" for wheel in wheels)
+    teeth = join_messages(
+        [
+            compose("parts-teeth-of-wheel", teeth=round(wheel.gear.teeth), wheel=describe_name(wheel.name))
+            for wheel in wheels
+        ],
+        ", ",
+    )
     return (
-        f"Teeth: {teeth}; module {wheels[0].gear.module:.6g} mm, as the distance of the fixed pivots requires.",
-        "The gears and their links are keyed to one shaft; their relative angle is the phase of the linkage.",
+        compose("parts-linkage-gear-teeth", teeth=teeth, module=f"{wheels[0].gear.module:.6g}"),
+        compose("parts-linkage-gears-keyed"),
     )
 
 
@@ -162,16 +170,9 @@ class _Builder:
         division = self._planes.division
         if division is None:
             return []
-        notes = [
-            f"Link {division.link} consists of two plates, one on either side of the second base. Both are keyed to "
-            f"the shaft {division.pivot}, which turns in that base, so that they move as one. Put the lower plate on "
-            "the shaft before laying that base over it."
-        ]
+        notes = [compose("parts-divided-link", link=division.link, pivot=division.pivot)]
         if self._driven is not None:
-            notes.append(
-                f"The input is keyed to the shaft {self._driven}, which is inserted from above and protrudes below "
-                "the base for the drive."
-            )
+            notes.append(compose("parts-input-on-shaft", pivot=self._driven))
         return notes
 
     def _group_joints(self, joint: str) -> set[str]:
@@ -219,13 +220,13 @@ class _Builder:
         plane = self._planes.plates[piece.name]
         return Part(
             name=f"link_{simplify_name(piece.name)}",
-            described=piece.name.replace("_", " "),
+            described=describe_identifier(piece.name),
             sort="link",
             carrier=Carrier(piece.link, self._mechanism.links[piece.link][0]),
             bodies=(Prism(region, *self._get_level(plane)),),
             along=direction / abs(direction),
             planes=(plane, plane),
-            material=MATERIALS[self._sizes.process][0],
+            material=name_material(MATERIALS[self._sizes.process][0]),
             colour=colour,
         )
 
@@ -271,7 +272,11 @@ class _Builder:
             found.append(
                 Part(
                     name=simplify_name(wheel.name),
-                    described=f"{wheel.name.replace('_', ' ')}, {round(wheel.gear.teeth)} teeth",
+                    described=compose(
+                        "parts-wheel-with-teeth",
+                        wheel=describe_identifier(wheel.name),
+                        teeth=f"{round(wheel.gear.teeth)}",
+                    ),
                     sort="gear",
                     carrier=Carrier(wheel.name if wheel.joint is None else wheel.link, wheel.joint),
                     bodies=(
@@ -282,7 +287,7 @@ class _Builder:
                     ),
                     along=1.0 + 0.0j,
                     planes=(plane, plane),
-                    material=MATERIALS[self._sizes.process][0],
+                    material=name_material(MATERIALS[self._sizes.process][0]),
                     colour=LINK_COLOURS[n % len(LINK_COLOURS)],
                 )
             )
@@ -307,13 +312,13 @@ class _Builder:
             found.append(
                 Part(
                     name=f"block_{simplify_name(slot.joint)}{'' if len(placed) == 1 else f'_{n + 1}'}",
-                    described=f"block at {slot.joint}",
+                    described=compose("parts-block", joint=slot.joint),
                     sort="block",
                     carrier=Carrier(slot.link, slot.joint),
                     bodies=(Prism(Region(outer, (Disc(place, 0.5 * self._sizes.hole),)), *self._get_level(plane)),),
                     along=slot.direction,
                     planes=(plane, plane),
-                    material={"print": "PETG", "laser": "sheet", "mill": "bronze"}[self._sizes.process],
+                    material=name_material({"print": "PETG", "laser": "sheet", "mill": "bronze"}[self._sizes.process]),
                     colour=BLOCK_COLOUR,
                 )
             )
@@ -396,13 +401,13 @@ class _Builder:
             prisms += self._make_bosses(plane, low, high)
         return Part(
             name=name,
-            described=name.replace("_", " "),
+            described=describe_identifier(name),
             sort="base",
             carrier=Carrier(GROUND, None),
             bodies=tuple(prisms),
             along=_find_longest_direction(points) if len(self._planes.bases) == 1 else self._across,
             planes=(plane, plane),
-            material=MATERIALS[self._sizes.process][0],
+            material=name_material(MATERIALS[self._sizes.process][0]),
             colour=BASE_COLOUR,
         )
 
@@ -457,18 +462,26 @@ class _Builder:
             link = self._find_keyed_link(joint)
             if link is None:
                 carrier = Carrier(GROUND, None if joint not in self._mechanism.joints else joint)
-                parts += self._make_pin(simplify_name(joint), f"pin {joint}", carrier, self._at[joint], levels, spans)
+                parts += self._make_pin(
+                    simplify_name(joint), compose("parts-pin", name=joint), carrier, self._at[joint], levels, spans
+                )
                 continue
             own = {self._planes.plates[piece.name] for piece in self._pieces if piece.link == link}
             keyed = sorted(own | self._find_gear_planes(joint))
             parts += self._make_pin(
-                simplify_name(joint), f"shaft {joint}", Carrier(link, joint), self._at[joint], levels, spans, keyed,
+                simplify_name(joint),
+                compose("parts-shaft-at-joint", joint=joint),
+                Carrier(link, joint),
+                self._at[joint],
+                levels,
+                spans,
+                keyed,
                 driven=joint == self._driven,
-            )  # fmt: skip
+            )
         for name, place in self._posts.items():
             levels = [*self._planes.bases]
             spans = [(levels[0], levels[1])]
-            parts += self._make_pin(name, name.replace("_", " "), Carrier(GROUND, None), place, levels, spans)
+            parts += self._make_pin(name, describe_identifier(name), Carrier(GROUND, None), place, levels, spans)
         return parts
 
     def _make_pin(
@@ -494,8 +507,8 @@ class _Builder:
         bodies = (Prism(Region(make_key_section(place, self._sizes.pin, self._key)), *self._get_level(plane)),)
         designation = self._key.standard and f"{self._key.standard} x {self._sizes.thickness:g}"
         return Part(
-            f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane),
-            MATERIALS[self._sizes.process][1], FASTENER_COLOUR, designation,
+            f"key_{name}_{plane}", compose("parts-key"), "key", carrier, bodies, 1.0 + 0.0j, (plane, plane),
+            name_material(MATERIALS[self._sizes.process][1]), FASTENER_COLOUR, designation,
         )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from kinematics.gear.teeth import Gear
 from kinematics.linkage.layout import list_gear_discs
 from kinematics.linkage.planar.mechanism import GearPair, Mechanism
+from kinematics.message import compose
 from service.parts.assembly.sizes import NotMade
 
 MIN_TEETH, MAX_TEETH = 18, 300
@@ -74,17 +75,20 @@ def find_teeth(ratio: float) -> tuple[int, int]:
         or abs(float(share) - size) > RATIO_TOLERANCE * size
         or max(share.numerator, share.denominator) > MAX_TEETH
     ):
-        raise NotMade(
-            f"No gears with up to {MAX_TEETH} teeth have the ratio {ratio:.12g} exactly, and an approximate ratio "
-            "would let the phase of the links drift."
-        )
+        raise NotMade(compose("parts-ratio-not-exact", largest=MAX_TEETH, ratio=f"{ratio:.12g}"))
     # Smallest multiple that avoids undercut on the smaller gear.
     times = math.ceil(MIN_TEETH / min(share.numerator, share.denominator))
     teeth = times * share.numerator, times * share.denominator
     if max(teeth) > MAX_TEETH:
         raise NotMade(
-            f"Gears of the ratio {ratio:.12g} need {teeth[0]} and {teeth[1]} teeth, with at least {MIN_TEETH} on the "
-            f"smaller; the maximum is {MAX_TEETH}."
+            compose(
+                "parts-ratio-needs-too-many-teeth",
+                ratio=f"{ratio:.12g}",
+                first=teeth[0],
+                second=teeth[1],
+                smallest=MIN_TEETH,
+                largest=MAX_TEETH,
+            )
         )
     return teeth
 

@@ -22,7 +22,16 @@ from kinematics.errors import MechanismError
 from kinematics.linkage.layout import Division, arrange_divided, arrange_planes, list_divisions
 from kinematics.linkage.planar.limits import find_cycle_from_reference
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-from service.parts.assembly.fit_sizes import Fitting, Trial, find_fault
+from kinematics.message import compose
+from service.parts.assembly.descriptions import describe_name
+from service.parts.assembly.fit_sizes import (
+    NARROW_FOR_BLOCKS,
+    NARROW_FOR_PINS,
+    NARROW_FOR_SHAFTS,
+    Fitting,
+    Trial,
+    find_fault,
+)
 from service.parts.assembly.model import Assembly
 from service.parts.assembly.sizes import MAX_PIN, MILLIMETRES_PER_UNIT, MIN_PIN, NotMade, PartsQuery, Sizes
 from service.parts.gears.sizing import MAX_TOOTH_PLAY
@@ -74,9 +83,7 @@ def make_linkage_parts(design: AnyDesign, problem: ProblemBase, query: PartsQuer
     if query.shafts is not None:
         link = ways[0].link
         raise NotMade(
-            "The mechanism cannot be built in planes with shafts on one base, nor between two. Omit `shafts`: then "
-            "its link "
-            f"{link} is divided into two plates on one shaft, on either side of the second base.", "/query/shafts",
+            compose("parts-needs-divided-link", link=link), "/query/shafts",
         )  # fmt: skip
     return _DividedLinkageFitting(design, problem, query, ways).build_assembly()
 
@@ -87,9 +94,9 @@ class _LinkageFitting(Fitting):
     def __init__(self, design: AnyDesign, problem: ProblemBase, query: PartsQuery) -> None:
         mechanism = rebuild_mechanism(design.mechanism, from_skeleton=True)
         if mechanism is None:
-            raise NotMade("The dimensions of this design do not assemble to a mechanism.")
+            raise NotMade(compose("parts-does-not-assemble"))
         if len(mechanism.gears) > 1 or any(gear.first != mechanism.input for gear in mechanism.gears):
-            raise NotMade("Parts are available for linkages with at most one gear pair, which the input must drive.")
+            raise NotMade(compose("parts-too-many-gear-pairs"))
         self._mechanism = mechanism
         self._block = getattr(problem, "layout", None)
         over = query.over or getattr(self._block, "over", None)
@@ -139,10 +146,10 @@ class _LinkageFitting(Fitting):
     def find_opening(self, sizes: Sizes) -> tuple[float, str]:
         """Return the widest opening: slots are wider than holes."""
         if self._mechanism.slides:
-            return sizes.block[1] + 2.0 * sizes.clearance, "blocks on pins"
+            return sizes.block[1] + 2.0 * sizes.clearance, NARROW_FOR_BLOCKS
         if self._mechanism.gears:
-            return 2.0 * measure_keyway_reach(sizes), "keyed shafts"
-        return sizes.hole, "pins"
+            return 2.0 * measure_keyway_reach(sizes), NARROW_FOR_SHAFTS
+        return sizes.hole, NARROW_FOR_PINS
 
     def list_problem_sizes(self) -> Iterator[Sizes]:
         """Yield the sizes of the problem's block, if they are consistent."""
@@ -164,13 +171,16 @@ class _LinkageFitting(Fitting):
 
     def try_sizes(self, sizes: Sizes, scale: float) -> Trial:
         """Build the assembly in these sizes, with the first choice of bases that works."""
-        reason = ""
+        reasons = []
         for shafts in self._list_shaft_options():
             trial = self._try_shafts(sizes, scale, shafts)
             if trial.assembly is not None:
                 return trial
-            reason = "; with two bases: ".join(filter(None, (reason, trial.reason)))
-        return Trial(None, reason)
+            reasons.append(trial.reason)
+        if len(reasons) == 1:
+            return Trial(None, reasons[0])
+        one_base, two_bases = reasons
+        return Trial(None, compose("parts-fits-on-neither-bases", one=one_base, two=two_bases))
 
     def _list_shaft_options(self) -> tuple[Shafts, ...]:
         requested = self._query.shafts or getattr(self._block, "shafts", None)
@@ -183,7 +193,7 @@ class _LinkageFitting(Fitting):
         wheels = [wheel for pair in mechanism.gears for wheel in make_pair_wheels(mechanism, pair)]
         module = max((wheel.gear.module for wheel in wheels), default=0.0)
         if wheels and sizes.clearance > MAX_TOOTH_PLAY * module:
-            return Trial(None, f"the clearance, also the play of the teeth, exceeds {MAX_TOOTH_PLAY:g} of their module")
+            return Trial(None, compose("parts-clearance-exceeds-tooth-play", share=f"{MAX_TOOTH_PLAY:g}"))
         idlers = {wheel.name: (wheel.centre, wheel.speed) for wheel in wheels if wheel.joint is None}
         motion = LinkageMotion(mechanism, larger * self._low, larger * self._high, self._closed, idlers)
         length, width = sizes.block
@@ -213,13 +223,10 @@ class _LinkageFitting(Fitting):
         return _check_assembly(assembly, sizes)
 
     def _describe_clash(self, parts: tuple[str, str], at: float) -> str:
-        one, other = parts
-        return f"no arrangement in planes separates {one} and {other} at {self._describe_input(at)}"
-
-    def _describe_input(self, at: float) -> str:
+        one, other = (describe_name(part) for part in parts)
         if self._mechanism.has_slide_input:
-            return f"the input's place {at:.4g}"
-        return f"an input angle of {math.degrees(at):.1f}°"
+            return compose("parts-not-separated-at-place", first=one, second=other, place=f"{at:.4g}")
+        return compose("parts-not-separated-at-angle", first=one, second=other, angle=f"{math.degrees(at):.1f}")
 
 
 class _DividedLinkageFitting(_LinkageFitting):
@@ -237,7 +244,7 @@ class _DividedLinkageFitting(_LinkageFitting):
 
     def find_opening(self, sizes: Sizes) -> tuple[float, str]:
         """Return the widest opening: slots of slides, or keyways."""
-        return max(super().find_opening(sizes), (2.0 * measure_keyway_reach(sizes), "keyed shafts"))
+        return max(super().find_opening(sizes), (2.0 * measure_keyway_reach(sizes), NARROW_FOR_SHAFTS))
 
     def try_sizes(self, sizes: Sizes, scale: float) -> Trial:
         """Build the assembly in these sizes, in the first way that works."""
@@ -299,7 +306,7 @@ def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tu
     if over == "cycle" or (over is None and (turns or used is None)):
         used = find_cycle_along(mechanism, branch)
     if used is None:
-        raise NotMade("The mechanism cannot move through the used range of this design.", "/query/over")
+        raise NotMade(compose("parts-used-range-impossible"), "/query/over")
     low, high = sorted(used)
     # The ends may be toggles: test the interior only.
     inputs = np.linspace(low, high, DRIVE_INPUTS + 2)[1:-1] if high > low else np.array([low])
@@ -307,9 +314,9 @@ def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tu
     try:
         valid = motion.compute_state(inputs).valid.all()
     except MechanismError as error:
-        raise NotMade(f"The mechanism cannot be driven: {error}.") from None
+        raise NotMade(compose("parts-cannot-be-driven", reason=str(error))) from None
     if not valid:
-        raise NotMade("The mechanism cannot be assembled over the whole motion.", "/query/over")
+        raise NotMade(compose("parts-not-assembled-over-motion"), "/query/over")
     turn = math.inf if slides else find_cycle_from_reference(mechanism)
     return low, high, abs(high - low - turn) <= 1e-9 * turn
 

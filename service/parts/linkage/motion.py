@@ -12,6 +12,7 @@ from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.branches import compute_cycle
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.message import compose
 from service.parts.assembly.model import Carrier, InputField, Placement
 from service.parts.assembly.sizes import NotMade
 
@@ -74,7 +75,9 @@ class LinkageMotion:
         if self.closed:
             return float(value * unit)
         if not low - near <= value <= high + near:
-            raise NotMade(f"The input must be from {low:.5g} to {high:.5g}.", f"/query/{self.input_field}")
+            raise NotMade(
+                compose("parts-input-out-of-range", low=f"{low:.5g}", high=f"{high:.5g}"), f"/query/{self.input_field}"
+            )
         return float(min(max(value, low), high) * unit)
 
     def sample_inputs(self, count: int) -> Real:
