@@ -20,7 +20,7 @@ class TextMessage(BaseModel):
     model_config = ConfigDict(title="Text message", extra="forbid", frozen=True)
 
     path: str = Field(description="JSON pointer to the text in this object.", examples=["/summary"])
-    id: str = Field(description="Id of the message.", examples=["planetary_train-no-train-within-tolerance"])
+    id: str = Field(description="Id of the message.", examples=["planetary_train-none-within-tolerance"])
     values: JsonObject = Field(
         description="Values in the text by name: texts, counts, or messages with an `id` and `values` of their own."
     )

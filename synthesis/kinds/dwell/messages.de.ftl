@@ -1,6 +1,3 @@
-### Progress
-
-dwell-progress-refining-starts = Verfeinerung { $next } von höchstens { $all }
 # Errors in the dwells.
 dwell-angle-missing = die Länge der Rast mit dwell_angle angeben oder dwells verwenden
 dwell-angles-fill-turn = { $count } Rasten von { $angle }° lassen keinen Teil der Umdrehung für die Bewegung

@@ -1,6 +1,3 @@
-### Progress
-
-dwell-progress-refining-starts = refining { $next } of at most { $all }
 # Errors in the dwells.
 dwell-angle-missing = give the length of the dwell by dwell_angle, or use dwells
 dwell-angles-fill-turn = { $count } dwells of { $angle }° leave no part of the turn for the movement

@@ -1,6 +1,3 @@
-### Progress
-
-function-progress-sixbars = Sechsgelenk { $next } von { $all } wird geprüft
 ### Übertragungsfunktionen: Getriebe, deren Abtrieb dem Antrieb folgt.
 
 ## Fehler einer Aufgabe. Jeder folgt auf den Namen eines Feldes.
@@ -191,3 +188,7 @@ function-no-better-transmission = Kein gefundenes Sechsgelenk hat einen deutlich
 # Auf diese beiden folgt ein Punkt oder der Rest des Satzes: ob die Sechsgelenke aufgeführt sind.
 function-sixbars-transmit-better = Der kleinste Übertragungswinkel des besten Viergelenks beträgt nur { $angle }°; Sechsgelenke übertreffen es
 function-sixbars-reduce-error = Sechsgelenke senken den Fehler auf { $share } % des Fehlers des besten Viergelenks
+
+## Fortschritt
+
+function-progress-sixbars = Sechsgelenk { $next } von { $all } wird geprüft

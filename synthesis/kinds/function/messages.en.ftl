@@ -1,6 +1,3 @@
-### Progress
-
-function-progress-sixbars = verifying { $next } of { $all } sixbars
 ### Function generation: linkages whose output follows their input.
 
 ## Faults of a problem. Each follows the name of a field.
@@ -197,3 +194,7 @@ function-no-better-transmission = No sixbar found clearly improves on the best f
 # A full stop follows these two, or the rest of the sentence: whether the sixbars are listed.
 function-sixbars-transmit-better = The best fourbar has a minimum transmission angle of only { $angle }°; sixbars exceed it
 function-sixbars-reduce-error = Sixbars reduce the error to { $share } % of the best fourbar's
+
+## Progress
+
+function-progress-sixbars = verifying { $next } of { $all } sixbars

@@ -1,7 +1,3 @@
-### Progress
-
-motion-progress-adding-drivers = Antriebszweischläge werden ergänzt
-motion-progress-driving-best-pairs = die besten Paare werden durchgefahren
 ### Lagensynthese. „Lagen“ sind die Ziellagen des Körpers; eine „Seite“ ist ein Zweischlag des Getriebes (Antrieb oder
 ### Abtrieb). Fehler stehen hinter dem Namen eines Felds, ohne Punkt am Ende.
 
@@ -26,7 +22,6 @@ motion-verifying-best-pairs =
         [one] das eine gesichtete Paar wird geprüft
        *[other] die besten von { $count } gesichteten Paaren werden geprüft
     }
-motion-driving-best-pairs = die besten Paare werden durchgefahren
 motion-sampling-poses = Lagen in den Toleranzen werden gezogen
 motion-sampling-linkages = Getriebe im Bauraum werden gezogen
 motion-fitting-linkages =
@@ -49,7 +44,6 @@ motion-pairing-dyads = Zweischläge werden gepaart
 motion-fitting-pair = Paar { $number } von { $count } wird angenähert
 motion-refining-pair = Paar { $number } von { $count } wird verfeinert
 motion-verifying-fits = angenäherte Getriebe werden geprüft
-motion-adding-drivers = Antriebszweischläge werden angefügt
 motion-sixbars-examined =
     { $count ->
         [one] { $count } Sechsgelenk untersucht
@@ -422,3 +416,8 @@ motion-only-sixbars-found = Es wurden kein Viergelenk und keine Schubkurbel gefu
 motion-no-type-found = Es wurden kein Viergelenk, keine Schubkurbel und kein Sechsgelenk gefunden.
 motion-only-sixbars-of-requested-types = Von den verlangten Getriebearten wurden nur Sechsgelenke gefunden.
 motion-no-requested-type-found = Von den verlangten Getriebearten wurde kein Getriebe gefunden.
+
+## Fortschritt
+
+motion-progress-adding-drivers = Antriebszweischläge werden ergänzt
+motion-progress-driving-best-pairs = die besten Paare werden durchgefahren

@@ -1,7 +1,3 @@
-### Progress
-
-motion-progress-adding-drivers = adding driver dyads
-motion-progress-driving-best-pairs = driving the best pairs
 ### Motion generation. "Positions" are the target poses of the body; a "side" is one dyad of the linkage (input or output).
 ### Errors are written after the name of a field, without a capital and a full stop.
 
@@ -26,7 +22,6 @@ motion-verifying-best-pairs =
         [one] verifying the best of { $count } pair that passed the screening
        *[other] verifying the best of { $count } pairs that passed the screening
     }
-motion-driving-best-pairs = driving the best pairs
 motion-sampling-poses = sampling poses within the tolerances
 motion-sampling-linkages = sampling linkages in the workspace
 motion-fitting-linkages =
@@ -49,7 +44,6 @@ motion-pairing-dyads = pairing dyads
 motion-fitting-pair = fitting pair { $number } of { $count }
 motion-refining-pair = refining pair { $number } of { $count }
 motion-verifying-fits = verifying the fitted linkages
-motion-adding-drivers = adding driver dyads
 motion-sixbars-examined =
     { $count ->
         [one] { $count } sixbar examined
@@ -399,3 +393,8 @@ motion-only-sixbars-found = No fourbar or slider-crank was found, only sixbars.
 motion-no-type-found = No fourbar, slider-crank or sixbar was found.
 motion-only-sixbars-of-requested-types = No linkage of the requested types was found except sixbars.
 motion-no-requested-type-found = No linkage of the requested types was found.
+
+## Progress
+
+motion-progress-adding-drivers = adding driver dyads
+motion-progress-driving-best-pairs = driving the best pairs

@@ -1,12 +1,8 @@
-### Progress
-
-parallel_motion-progress-driving-sixbars = Sechsgelenke werden durchgefahren
 ### Parallelführung: Ein Sechsgelenk führt einen Körper auf einer Koppelkurve, ohne ihn zu drehen.
 ### Fehler stehen hinter dem Namen eines Felds, ohne Punkt am Ende.
 
 # Fortschritt einer Suche und ihr Verfahren.
 
-parallel_motion-driving-sixbars = Sechsgelenke werden durchgefahren
 parallel_motion-verified = geprüft
 parallel_motion-method = Ersatzgetriebe, eines davon an den Gestellpunkt des anderen verschoben
 
@@ -54,3 +50,7 @@ parallel_motion-best-design =
 parallel_motion-best-design-swings =
     Bester Entwurf: kleinster Übertragungswinkel { $angle }° (auf einem Teil der Kurve hin und her bewegt), angetrieben
     bei Q = ({ $x }; { $y }) relativ zu P.
+
+## Fortschritt
+
+parallel_motion-progress-driving-sixbars = Sechsgelenke werden durchgefahren

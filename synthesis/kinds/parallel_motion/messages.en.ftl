@@ -1,12 +1,8 @@
-### Progress
-
-parallel_motion-progress-driving-sixbars = driving sixbars
 ### Parallel motion: a sixbar carries a body along a coupler curve without turning it.
 ### Errors are written after the name of a field, without a capital and a full stop.
 
 # Progress of a search, and its method.
 
-parallel_motion-driving-sixbars = driving sixbars
 parallel_motion-verified = verified
 parallel_motion-method = cognates, one of them moved to the other's pivot
 
@@ -50,3 +46,7 @@ parallel_motion-best-design =
 parallel_motion-best-design-swings =
     Best design: minimum transmission angle { $angle }° (driven back and forth along a part of the curve), driven at
     Q = ({ $x }, { $y }) relative to P.
+
+## Progress
+
+parallel_motion-progress-driving-sixbars = driving sixbars

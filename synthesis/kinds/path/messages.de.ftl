@@ -1,10 +1,3 @@
-### Progress
-
-path-progress-sixbars-driven = { $done } von { $all } Sechsgelenken durchgefahren
-path-progress-linkages-verified = { $done } von { $all } Getrieben geprüft
-path-progress-driving-linkage = Getriebe { $next } von { $all } wird durchgefahren
-path-progress-linkages-driven = { $done } von { $all } Getrieben durchgefahren
-path-progress-real-linkages-verified = { $done } von { $all } reellen Getrieben geprüft
 # Errors in the points and their timing.
 path-angle-with-free-timing = die Zuordnung ist frei; "timing": "prescribed" angeben oder dies weglassen
 path-prescribed-timing-only = gilt nur bei vorgeschriebener Zuordnung; die Zuordnung ist frei

@@ -1,10 +1,3 @@
-### Progress
-
-path-progress-sixbars-driven = { $done } of { $all } sixbars driven
-path-progress-linkages-verified = { $done } of { $all } linkages verified
-path-progress-driving-linkage = driving linkage { $next } of { $all }
-path-progress-linkages-driven = { $done } of { $all } linkages driven
-path-progress-real-linkages-verified = { $done } of { $all } real linkages verified
 # Errors in the points and their timing.
 path-angle-with-free-timing = timing is free; set "timing": "prescribed", or leave this out
 path-prescribed-timing-only = applies to prescribed timing only; the timing is free
