@@ -35,11 +35,6 @@ model-sixbars-without-manufacture =
 model-sixbars-without-zones =
     diese Zonen gelten für die Seiten eines Viergelenks; für Sechsgelenke stattdessen constraints.{ $name }_region
     angeben
-model-watt-1-name = Watt-I-Sechsgelenk
-model-watt-2-name = Watt-II-Sechsgelenk
-model-stephenson-1-name = Stephenson-I-Sechsgelenk
-model-stephenson-2-name = Stephenson-II-Sechsgelenk
-model-stephenson-3-name = Stephenson-III-Sechsgelenk
 
 # Targets and input motion of given linkages
 

@@ -28,11 +28,6 @@ model-stephenson-2-without-class = classifies the fourbar O2 A B O4, which a Ste
 model-sixbars-without-manufacture = sixbars do not support `manufacture`; leave it or the sixbars out
 model-sixbars-without-zones =
     these zones are for the sides of a fourbar; for sixbars give constraints.{ $name }_region instead
-model-watt-1-name = Watt I sixbar
-model-watt-2-name = Watt II sixbar
-model-stephenson-1-name = Stephenson I sixbar
-model-stephenson-2-name = Stephenson II sixbar
-model-stephenson-3-name = Stephenson III sixbar
 
 # Targets and input motion of given linkages
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from kinematics.message import compose
 from synthesis.model.linkage.answer import SixbarMechanism
 from synthesis.model.linkage.conversion import build_skeleton, to_point
 
@@ -19,20 +18,6 @@ SIXBAR_NAMES: Mapping[str, str] = {
     "stephenson_3": "Stephenson III sixbar",
 }
 """Name of each type, for sentences and drawings."""
-
-
-_NAME_IDS: Mapping[str, str] = {
-    "watt_1": "model-watt-1-name",
-    "watt_2": "model-watt-2-name",
-    "stephenson_1": "model-stephenson-1-name",
-    "stephenson_2": "model-stephenson-2-name",
-    "stephenson_3": "model-stephenson-3-name",
-}
-
-
-def name_sixbar(kind: str) -> str:
-    """Compose the name of a type, such as "Watt I sixbar", as a value for a message."""
-    return compose(_NAME_IDS[kind])
 
 
 def list_lengths(joints: Mapping[str, complex], links: Links, *, point: str | None = "P") -> dict[str, float]:
