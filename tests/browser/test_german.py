@@ -49,8 +49,22 @@ NAMES = re.compile(r"\b(?:MuJoCo|Modelica|mechsynth|rev|min|[A-Z0-9+]+)\b|\brad[
 
 MADE_UP = """
 const asked = fetch;
-window.fetch = (where, ...more) => (String(where).includes("/studio/messages/")
-  ? Promise.resolve(new Response(JSON.stringify(%s))) : asked(where, ...more));
+const bracket = (text) => text.split(" ").map((word) => `⟦${word}⟧`).join(" ");
+// Texts of the service are in the language of the page. Other strings in an answer are single words.
+const translate = (value, key) => {
+  if (typeof value === "string") return key === "described" || value.includes(" ") ? bracket(value) : value;
+  if (Array.isArray(value)) return value.map((item) => translate(item, key));
+  if (value === null || typeof value !== "object") return value;
+  return Object.fromEntries(Object.entries(value).map(([name, item]) =>
+    [name, name === "problem" || name === "messages" ? item : translate(item, name)]));
+};
+window.fetch = async (where, ...more) => {
+  if (String(where).includes("/studio/messages/")) return new Response(JSON.stringify(%s));
+  const answer = await asked(where, ...more);
+  const { status, headers } = answer;
+  if (!/\\/v1\\/(jobs|analyses)/.test(String(where)) || !headers.get("Content-Type")?.includes("json")) return answer;
+  return new Response(JSON.stringify(translate(await answer.json())), { status, headers });
+};
 """
 
 
