@@ -133,6 +133,7 @@ HOMONYMS = {
         "service/observability/telemetry.py",
         "service/outlines/answer.py",
         "service/outlines/svg.py",
+        "synthesis/model/text_messages.py",
     },
     # A result of an analysis of forces.
     "flywheel": {"synthesis/model/dynamics/request.py"},

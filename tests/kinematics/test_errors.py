@@ -92,6 +92,9 @@ def test_every_error_has_the_values_of_its_messages():
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if not isinstance(node, ast.Call) or ast.unparse(node.func) not in LAZY:
                 continue
+            # An id that a variable holds is not known here; test_message_catalogues.py checks that it exists.
+            if any(isinstance(part, ast.Name | ast.IfExp) for part in node.args[:2]):
+                continue
             ids = [part.value for part in node.args if isinstance(part, ast.Constant) and isinstance(part.value, str)]
             needed = set().union(*(known[name] for name in ids if name.startswith(ID_PREFIX)))
             given = {word.arg for word in node.keywords}

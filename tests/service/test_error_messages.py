@@ -17,7 +17,7 @@ from synthesis.analyses import list_families
 from synthesis.mechanisms.cam import GivenBarrelFollower
 from synthesis.model.linkage.given_linkage import SkeletonSpec
 from synthesis.registry import KINDS, get_first_example
-from tests.service.api.test_error_paths import variations
+from tests.support.service.variations import variations
 
 MOTION = get_first_example("motion")
 CAM = get_first_example("cam")

@@ -240,6 +240,18 @@ class _Builder:
             parts += stack.make_fillers(name, ON_CRANK, z, [(plane, crank)])
         return parts
 
+    def _make_wheel_shaft(self, span: tuple[int, int], keyed: tuple[int, ...], stub: int) -> list[Part]:
+        text = compose("parts-wheel-shaft")
+        return self._stack.make_pin(
+            "wheel", text, ON_WHEEL, 0j, span, diameter=self._wheel_shaft, keyed=keyed, stub=stub
+        )
+
+    def _make_crankshaft(self, span: tuple[int, int], keyed: tuple[int, ...], stub: int) -> list[Part]:
+        text = compose("parts-crankshaft")
+        return self._stack.make_pin(
+            "crank", text, ON_CRANK, self._axis, span, diameter=self._crank_shaft, keyed=keyed, stub=stub
+        )
+
     # A wheel next to the crank
 
     def _make_external(self) -> list[Part]:
@@ -251,26 +263,8 @@ class _Builder:
             stack.make_plate("locking_disc", compose("parts-locking-disc"), "link", ON_CRANK, locking, 1, DISC_COLOUR),
             self._make_crank(2),
             *self._make_rollers(1, 2),
-            *stack.make_pin(
-                "wheel",
-                compose("parts-wheel-shaft"),
-                ON_WHEEL,
-                0j,
-                (0, 1),
-                diameter=self._wheel_shaft,
-                keyed=(1,),
-                stub=-1,
-            ),
-            *stack.make_pin(
-                "crank",
-                compose("parts-crankshaft"),
-                ON_CRANK,
-                self._axis,
-                (0, 2),
-                diameter=self._crank_shaft,
-                keyed=(1, 2),
-                stub=-1,
-            ),
+            *self._make_wheel_shaft((0, 1), keyed=(1,), stub=-1),
+            *self._make_crankshaft((0, 2), keyed=(1, 2), stub=-1),
         ]
         spans = [(0, 1)] if sizes.process != "print" else []
         parts += stack.make_fillers("wheel", ON_WHEEL, 0j, spans, self._wheel_shaft)
@@ -307,26 +301,8 @@ class _Builder:
             stack.make_plate("crescent", compose("parts-locking-crescent"), "link", ON_CRANK, crescent, 2, DISC_COLOUR),
             self._make_crank(3),
             *self._make_rollers(2, 3),
-            *stack.make_pin(
-                "wheel",
-                compose("parts-wheel-shaft"),
-                ON_WHEEL,
-                0j,
-                (0, 1),
-                diameter=self._wheel_shaft,
-                keyed=(1,),
-                stub=-1,
-            ),
-            *stack.make_pin(
-                "crank",
-                compose("parts-crankshaft"),
-                ON_CRANK,
-                self._axis,
-                (3, 4),
-                diameter=self._crank_shaft,
-                keyed=(3,),
-                stub=1,
-            ),
+            *self._make_wheel_shaft((0, 1), keyed=(1,), stub=-1),
+            *self._make_crankshaft((3, 4), keyed=(3,), stub=1),
         ]
         for n, z in enumerate(dowels, 1):
             parts += stack.make_pin(f"dowel_{n}", compose("parts-dowel-pin", number=n), ON_WHEEL, z, (1, 2))

@@ -9,10 +9,7 @@ import pytest
 from synthesis.analyses import list_families
 from synthesis.registry import KINDS, list_examples
 from tests.support.service.running import SCRIPTED, RunningServer
-
-STRANGE = ("odd", -7.5, {"odd": 1}, [[]], None)
-FEW = 2
-"""Of a long list the first members stand for all."""
+from tests.support.service.variations import variations
 
 ANALYSES = {family.request.__name__: family.request.model_json_schema()["examples"][0] for family in list_families()}
 
@@ -26,40 +23,6 @@ def asked(tmp_path_factory):
         yield client
     assert server.stop() == 0
     assert "Traceback" not in server.log()
-
-
-def places(value, path=()):
-    """Every place of a body, but of a long list the first few."""
-    if path:
-        yield path
-    if isinstance(value, dict):
-        for key, member in value.items():
-            yield from places(member, (*path, key))
-    elif isinstance(value, list):
-        for n, member in enumerate(value[:FEW]):
-            yield from places(member, (*path, n))
-
-
-def at(body, path):
-    for step in path:
-        body = body[step]
-    return body
-
-
-def variations(body):
-    """The body with one place removed, or made something strange, or given a field too many."""
-    for path in places(body):
-        for strange in STRANGE:
-            varied = copy.deepcopy(body)
-            at(varied, path[:-1])[path[-1]] = strange
-            yield varied
-        varied = copy.deepcopy(body)
-        del at(varied, path[:-1])[path[-1]]
-        yield varied
-        if isinstance(at(body, path), dict):
-            varied = copy.deepcopy(body)
-            at(varied, path)["no_such_field"] = 1
-            yield varied
 
 
 def leads(body, pointer):

@@ -28,7 +28,7 @@ def test_unknown_paths(client, path):
     assert answer.status_code == 404
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.json()["instance"] == path
-    assert set(answer.json()) == {"type", "title", "status", "detail", "instance"}
+    assert set(answer.json()) == {"type", "title", "status", "detail", "instance", "messages"}
 
 
 def test_other_methods_are_told_which_there_are(client):

@@ -12,15 +12,8 @@ from tests.support.service.answers import finished
 GERMAN = {"Accept-Language": "de-CH, en;q=0.3"}
 ENGLISH = {"Accept-Language": "en-GB, de;q=0.3"}
 
-# A ratio that no train has within the limits, so that the answer is a sentence with values.
-UNREACHABLE = {
-    "kind": "gear_train",
-    "ratio": 3.0,
-    "tolerance": 0.0,
-    "stages": 1,
-    "min_teeth": 17,
-    "max_teeth": 20,
-}
+# No train within these limits has the ratio, so the answer is a sentence with values.
+UNREACHABLE = {"kind": "gear_train", "ratio": "pi", "max_stages": 1, "teeth": {"min": 17, "max": 19}}
 
 UNSOLVABLE_FOURBAR = {
     "mechanism": {"type": "fourbar", "links": {"ground": 10.0, "crank": 1.0, "coupler": 2.0, "rocker": 3.0}},

@@ -63,5 +63,5 @@ def test_the_extent_is_that_of_meshes_of_one_distance(
     choices = sum(math.comb(count + stages - 2, stages - 1) for count in meshes.values())
     problem = parse_problem({key: value for key, value in stated.items() if value is not None})
     for most, refused in ((choices, False), (choices - 1, True)):
-        monkeypatch.setattr(search_size, "COAXIAL_LIMIT", (most, "combinations of meshes"))
+        monkeypatch.setattr(search_size, "COAXIAL_LIMIT", (most, search_size.COAXIAL_LIMIT[1]))
         assert any("combinations" in fault.detail for fault in problem.find_contradictions()) == refused

@@ -147,7 +147,7 @@ def test_progress_runs_over_its_span() -> None:
         ["a", "b"],
         lambda share, message: told.append((share, message)),
         (0.5, 1.0),
-        "path-progress-driving-linkage",
+        "path-driving-linkages",
     )
     assert list(drawn) == ["a", "b"]
     assert told == [(0.5, "driving linkage 1 of 2"), (0.75, "driving linkage 2 of 2")]

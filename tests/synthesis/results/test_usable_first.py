@@ -84,7 +84,7 @@ def test_what_the_first_design_lacks_is_told_where_it_is_not_among_the_nearest()
     found = sort_usable_first(parse_problem(CLOSED), [first, nearest])
     assert found.designs == [first, nearest]
     assert found.remark == (
-        " No design within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of 10 "
+        "No design within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of 10 "
         "or less"
         " and no link longer than 5 times the task's size."
     )
