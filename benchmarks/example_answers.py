@@ -76,7 +76,9 @@ def digest_answer(named: tuple[str, Statement]) -> tuple[str, str, float]:
     begun = process_time()
     answer: dict[str, Any] = solve(parse_problem(statement)).model_dump(mode="json")
     elapsed = process_time() - begun
-    answer.pop("summary")
+    # Texts may be reworded, and their messages have other values then.
+    for field in ("summary", "messages"):
+        answer.pop(field, None)
     digest = sha256("\n".join(iterate_values(answer)).encode()).hexdigest()[:DIGEST_LENGTH]
     line = f"{digest} {len(answer['designs']):3d} designs"
     if reason := explain_incomparable(statement):
