@@ -110,10 +110,10 @@ $(VENV)/.cad-tests: requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 	@touch $@
 
 # Time limit for the random cases, minutes. The cases in the browser get about a quarter of it in addition.
-MINUTES := 6
+MINUTES := 4
 BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr $(MINUTES) / 4 + 1))
 
-campaign: $(STAMP) $(MULTIBODY) chromium
+campaign: $(STAMP) $(MULTIBODY) $(NODE) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(BESIDES)
 	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) tests/browser
 
