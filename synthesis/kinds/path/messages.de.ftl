@@ -101,7 +101,7 @@ path-linkages-fitted =
         [one] { $count } Getriebe angenähert
        *[other] { $count } Getriebe angenähert
     }
-path-sixbars-fitted = { $type }: { $compared } Sechsgelenke verglichen, { $fitted } angenähert
+path-sixbars-fitted = Runde { $round }: { $compared } Sechsgelenke verglichen, { $fitted } angenähert
 
 # Summaries of exact searches.
 path-five-points-with-timing =

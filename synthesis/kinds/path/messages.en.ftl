@@ -91,7 +91,7 @@ path-linkages-fitted =
         [one] { $count } linkage fitted
        *[other] { $count } linkages fitted
     }
-path-sixbars-fitted = { $type }: { $compared } sixbars compared, { $fitted } fitted
+path-sixbars-fitted = Round { $round }: { $compared } sixbars compared, { $fitted } fitted
 
 # Summaries of exact searches.
 path-five-points-with-timing =

@@ -10,7 +10,7 @@ the stance line and the place s along it; the margins at each are
 
 where f is the flatness and t the share by which the speed may differ. They precede all other margins of
 :mod:`synthesis.numerics.augmented_lagrangian`. The rows of points and of the other constraints are
-those of :mod:`synthesis.kinds.path.residuals.points` and :mod:`synthesis.kinds.path.residuals.sixbar`; slider-cranks
+those of :mod:`synthesis.kinds.path.residuals.points` and :mod:`synthesis.fit.linkage.residuals`; slider-cranks
 and geared fivebars have constraints on their fixed pivots and their longest link.
 """
 
@@ -25,10 +25,11 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import GEARED_FIVEBAR, OPTIONS, SLIDER_CRANK, compute_lengths
 from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
 from synthesis.fit.coupler_curve import place_with_slopes
-from synthesis.fit.sixbar_curve import UNKNOWNS, differentiate_pins, differentiate_point
+from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants, differentiate_nodes
+from synthesis.fit.linkage.residuals import compute_linkage_rows
+from synthesis.fit.linkage.setting import TRACED, unpack_table
 from synthesis.kinds.path.residuals.curve_descent import count_links, is_jamming, measure_pivot_violations
 from synthesis.kinds.path.residuals.points import compute_path_rows
-from synthesis.kinds.path.residuals.sixbar import CARRIER, HOLDER, SIDE, compute_sixbar_rows
 from synthesis.numerics.array_layout import ArrayLayout
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
@@ -281,43 +282,44 @@ def _append_stance_rows(
 
 
 @njit(ROWS, **OPTIONS)
-def compute_sixbar_stance_rows(
-    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+def compute_linkage_stance_rows(
+    x: Real, targets: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Compute the rows of :func:`compute_sixbar_rows` and those of the stance.
+    """Compute the rows of :func:`compute_linkage_rows` and those of the stance.
 
-    See :func:`compute_fourbar_stance_rows`.
+    ``setting`` begins with the stance, ``state`` with the inputs of the targets, followed by the margins of the stance.
     """
-    n, own = len(points), setting[STANCE_SIZE:]
+    n, own = len(targets), setting[STANCE_SIZE:]
     inner = np.empty(len(state) - MARGIN_COUNT)
     inner[:n] = state[:n]
-    m = compute_sixbar_rows(x, points, own, multipliers[MARGIN_COUNT:], inner, residuals, jacobian)
+    m = compute_linkage_rows(x, targets, own, multipliers[MARGIN_COUNT:], inner, residuals, jacobian)
     if m < 0:
         return -1
     state[:n], state[n + MARGIN_COUNT :] = inner[:n], inner[n:]
-    lengths, chart, turns = np.empty(4), np.empty((4, 4)), np.zeros((2, UNKNOWNS))
-    compute_lengths(int(own[FAMILY_INDEX]), x, lengths, chart)
-    places, by = np.empty(2 * PLACE_COUNT, np.complex128), np.empty((2 * PLACE_COUNT, UNKNOWNS), np.complex128)
-    swings, slopes = np.zeros((2, UNKNOWNS + 1)), np.empty(UNKNOWNS + 1, np.complex128)
-    by_c, by_d = np.empty(UNKNOWNS + 1, np.complex128), np.empty(UNKNOWNS + 1, np.complex128)
+    nodes, _, _, _, _ = unpack_table(own)
+    count, point, unknowns = len(nodes), int(own[TRACED]), len(x)
+    constants, joints, cosines = np.empty((count, CONSTANT_COUNT)), np.empty((count, 2)), np.zeros(count)
+    slopes, by_point = np.zeros((count, 2, 1 + 2 * count)), np.zeros(unknowns + 1, np.complex128)
+    compute_constants(nodes, x, constants)
+    places, by = np.empty(2 * PLACE_COUNT, np.complex128), np.empty((2 * PLACE_COUNT, unknowns), np.complex128)
+    turns = np.zeros((2, unknowns))
     first = state[int(setting[FIRST])]
     last = state[int(setting[LAST])] + _compute_end_offset(state, n, setting)
     # The first two passes compute the derivatives of the ends, which all others need.
     for k in range(-2, 2 * PLACE_COUNT):
         share, angle = (0.0, first) if k == -2 else (1.0, last) if k == -1 else _locate_place(k, first, last)
-        closes, c, d = differentiate_pins(
-            x, lengths, chart, own[SIGN_INDEX], int(own[CARRIER]), int(own[HOLDER]), angle, swings, by_c, by_d
-        )
-        if not closes:
+        if not close_linkage(nodes, x, constants, angle, joints, cosines):
             return -1
-        closes, p = differentiate_point(x, own[SIDE], c, d, by_c, by_d, slopes)
-        if not closes:
-            return -1
+        differentiate_nodes(nodes, x, constants, angle, joints, slopes)
+        # Derivatives by the input are last here.
+        for c in range(2 * count):
+            by_point[c] = complex(slopes[point, 0, 1 + c], slopes[point, 1, 1 + c])
+        by_point[unknowns] = complex(slopes[point, 0, 0], slopes[point, 1, 0])
         if k < 0:
-            _compute_nearest_turn(slopes, UNKNOWNS, turns[k + 2])
+            _compute_nearest_turn(by_point, unknowns, turns[k + 2])
             continue
-        places[k] = p
-        _shift_slopes(slopes, UNKNOWNS, share, turns, by[k])
+        places[k] = complex(joints[point, 0], joints[point, 1])
+        _shift_slopes(by_point, unknowns, share, turns, by[k])
     rows: int = _append_stance_rows(
         places, by, last - first, turns, setting, multipliers, state[n : n + MARGIN_COUNT], residuals, jacobian, m
     )

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import itertools
+import math
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from kinematics.linkage.planar.drive import drive
+from synthesis.fit.linkage.setting import INPUT_BOX, PIVOT_BOX, WORKSPACE_BOX
+from synthesis.fit.linkage.topology import SIXBAR_FORMS
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.residuals.sixbar import ROOM
-from synthesis.kinds.path.sixbar.fit import WORKSPACE_MARGIN, pack_sixbar_setting
+from synthesis.kinds.path.sixbar.limits import WORKSPACE_MARGIN, build_packer
+from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
+from synthesis.kinds.path.sixbar.shape_matching import find_similar_linkages
 from synthesis.kinds.path.task.ranking import build_ordering
 from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
+from synthesis.verification.reconstruction import rebuild_mechanism
+from tests.support.synthesis.random_linkages import trace_nodes
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
@@ -43,11 +50,44 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
     room = {"box": [[-120.0, -110.0], [140.0, 150.0]], "link_width": 4.0, "obstacles": [FAR_AWAY]}
     problem = parse_problem(TASK | {"space": room | {"clearance": clearance}})
     centre, size = 10.0 + 5.0j, 80.0
-    held = pack_sixbar_setting(problem, centre, size, 20.0, 10.0)[ROOM] * size
-    sides = held + np.array([10.0, 10.0, 5.0, 5.0]) - WORKSPACE_MARGIN * size * np.array([1.0, -1.0, 1.0, -1.0])
+    setting = build_packer(problem, centre, size, 20.0, 10.0)(SIXBAR_FORMS["stephenson_3"][0])
+    for pivots in (INPUT_BOX, PIVOT_BOX):
+        assert setting[pivots] == pytest.approx(setting[WORKSPACE_BOX])
+    sides = (
+        setting[WORKSPACE_BOX] * size
+        + np.array([10.0, 10.0, 5.0, 5.0])
+        - WORKSPACE_MARGIN * size * np.array([1.0, -1.0, 1.0, -1.0])
+    )
     assert sides == pytest.approx([-118.0, 138.0, -108.0, 148.0])
     assert problem.space.shrink_box_for_joints() == (-118.0, 138.0, -108.0, 148.0)
     assert problem.space.shrink_box_for_joints(1.0) == (-117.0, 137.0, -107.0, 147.0)
+
+
+FORMS = [(kind, n) for kind, forms in SIXBAR_FORMS.items() for n in range(len(forms))]
+CIRCLE = np.exp(2j * np.pi * np.arange(48) / 48)
+
+
+@pytest.mark.parametrize(("kind", "n"), FORMS)
+def test_the_core_drives_the_same_curve_once_around(kind, n):
+    """The analysis core closes loops by root finding; the engine intersects circles from the input outwards."""
+    topology = SIXBAR_FORMS[kind][n]
+    fit = find_similar_linkages(topology, CIRCLE.real + 0.6j * CIRCLE.imag, True, 1024, 1, np.random.default_rng(0))[0]
+    sixbar = build_fitted_sixbar(kind, fit, 3.0 - 2.0j, 7.0)
+    mechanism = rebuild_mechanism(sixbar)
+    inputs = 2.0 * np.pi * np.arange(2000) / 2000
+    motion = drive(mechanism, float(mechanism.reference_input) + inputs, order=0)
+    assert motion.valid.all()
+    expected = 3.0 - 2.0j + 7.0 * trace_nodes(topology, fit.x, fit.inputs)[:, topology.point] @ [1.0, 1.0j]
+    gaps = np.abs(expected[:, None] - motion.joints["P"][0]).min(axis=1)
+    # The core's grid of inputs is 1/2000 of a turn.
+    assert gaps.max() < 0.05
+    assert abs(motion.joints["P"][0][0] - expected[0]) < 1e-9
+    assert sixbar.type == kind
+    assert set(motion.sines) == ({"link_3", "link_5", "output"} if topology.triad else {"coupler", "link_5"})
+    assert min(np.abs(sines).min() for sines in motion.sines.values()) > math.sin(math.radians(14.0))
+    body = next(link for link in sixbar.skeleton.links if "P" in link.joints)
+    assert body.name == topology.body
+    assert not {"O2", "O4", "O6"} & set(body.joints)
 
 
 def test_rounds_say_of_which_types_they_are():

@@ -15,11 +15,14 @@ from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, GEARED_FIVEBAR, SLIDER_CRANK, compute_lengths
 from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
 from synthesis.fit.coupler_curve import place_linkage
-from synthesis.fit.sixbar_curve import compute_velocity
+from synthesis.fit.linkage.descent import build_point_targets
+from synthesis.fit.linkage.margins import count_margins
+from synthesis.fit.linkage.residuals import FIRST_NODE, count_rows
+from synthesis.fit.linkage.setting import STEPS
+from synthesis.fit.linkage.topology import SIXBAR_FORMS
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.constraint_vector import count_setting_margins
 from synthesis.kinds.path.residuals.curve_constraints import pack_curve_setting
-from synthesis.kinds.path.residuals.sixbar import CARRIER, HOLDER, SIDE, STEPS, count_sixbar_margins, count_sixbar_rows
 from synthesis.kinds.path.residuals.stance import (
     JAM_CYCLE,
     LENGTH_MARGIN_COUNT,
@@ -33,16 +36,17 @@ from synthesis.kinds.path.residuals.stance import (
     SIMPLE_SIZE,
     STANCE_SIZE,
     compute_fourbar_stance_rows,
+    compute_linkage_stance_rows,
     compute_simple_stance_rows,
-    compute_sixbar_stance_rows,
 )
-from synthesis.kinds.path.sixbar.fit import pack_sixbar_setting
-from synthesis.kinds.path.sixbar.shape_matching import FORMS, find_similar_sixbars
+from synthesis.kinds.path.sixbar.limits import build_packer
+from synthesis.kinds.path.sixbar.shape_matching import find_similar_linkages
 from synthesis.kinds.path.verification.fourbar import verify_path
 from synthesis.kinds.path.verification.stance import measure_stance
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
 from tests.campaign import further
+from tests.support.synthesis.random_linkages import trace_nodes
 
 TURNS = np.linspace(0.0, math.tau, 24, endpoint=False)
 
@@ -111,7 +115,9 @@ Rows = Callable[..., int]
 def assert_derivatives(rows: Rows, x: np.ndarray, points: np.ndarray, setting: np.ndarray, most: int, state: np.ndarray,
                        limits: int) -> None:  # fmt: skip
     """Rows of a linkage that is at the points: there the derivatives leave nothing out."""
-    placed = np.stack([points.real, points.imag, np.zeros(len(points)), np.ones(len(points))], axis=1)
+    placed = points
+    if points.ndim == 1:
+        placed = np.stack([points.real, points.imag, np.zeros(len(points)), np.ones(len(points))], axis=1)
     multipliers = np.append(np.zeros(limits), 30.0)
 
     def settled(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -179,21 +185,19 @@ def test_derivatives_of_a_fourbar_whose_stance_goes_on_past_the_last_point() -> 
 
 
 def test_derivatives_of_a_sixbar_whose_stance_goes_on_past_the_last_point() -> None:
-    form = FORMS["stephenson_3"][0]
+    topology = SIXBAR_FORMS["stephenson_3"][0]
     around = np.exp(1j * np.arange(48) * math.tau / 48) * (1.0 + 0.1 * np.cos(np.arange(48)))
-    drawn = find_similar_sixbars(form, around, True, 4096, 2, np.random.default_rng(0))
-    x, (sign, side), theta = drawn.x[0].copy(), drawn.signs[0], drawn.theta[0]
-    own = pack_sixbar_setting(CIRCLE, 0j, 1.0, 20.0, 10.0)
-    own[FAMILY_INDEX], own[CARRIER], own[HOLDER] = form
-    own[SIGN_INDEX], own[SIDE], own[STEPS] = sign, side, 36
-    lengths, limits = np.zeros(4), count_sixbar_margins(own) + MARGIN_COUNT
-    compute_lengths(int(form[0]), x, lengths, np.zeros((4, 4)))
-    points = np.array([compute_velocity(x, lengths, sign, int(form[1]), int(form[2]), side, one)[1] for one in theta])
+    fit = find_similar_linkages(topology, around, True, 4096, 2, np.random.default_rng(0))[0]
+    own = build_packer(CIRCLE, 0j, 1.0, 20.0, 10.0)(topology).copy()
+    own[STEPS] = 36
+    limits = count_margins(own) + MARGIN_COUNT
+    points = trace_nodes(topology, fit.x, fit.inputs)[:, topology.point] @ [1.0, 1.0j]
+    targets = build_point_targets(points, np.ones(48))
+    targets[:, FIRST_NODE] = topology.point
     setting = np.concatenate([[40, 10, math.tau], LINE, own])
-    state = np.concatenate([theta, np.zeros(limits)])
-    assert_derivatives(
-        compute_sixbar_stance_rows, x, points, setting, count_sixbar_rows(48, own) + MARGIN_COUNT, state, limits
-    )
+    state = np.concatenate([fit.inputs, np.zeros(limits)])
+    most = count_rows(48, own) + MARGIN_COUNT
+    assert_derivatives(compute_linkage_stance_rows, fit.x, targets, setting, most, state, limits)
 
 
 def by_two_circles(one: np.ndarray, other: np.ndarray, near: float, far: float) -> np.ndarray:

@@ -1,0 +1,221 @@
+"""Descents of linkages of any topology to targets: with soft constraints, under enforced ones, and by basin hopping.
+
+The rows are those of :mod:`synthesis.fit.linkage.residuals`; the methods are Levenberg and Marquardt's
+(:mod:`synthesis.numerics.levenberg`) and multipliers (:mod:`synthesis.numerics.augmented_lagrangian`). Basin hopping
+perturbs the nodes of the best fits, each by a share of its shortest link, and descends again; a better end replaces its
+parent. Results do not depend on the number of threads.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Complex, Real
+from synthesis.fit.linkage.margins import EQUATION_COUNT, count_margins
+from synthesis.fit.linkage.residuals import (
+    FIRST_NODE,
+    FREE,
+    KIND,
+    PLACE,
+    ROOT,
+    SLOT,
+    TARGET_SIZE,
+    X,
+    Y,
+    compute_linkage_rows,
+    count_rows,
+)
+from synthesis.fit.linkage.setting import BACK, FULL_TURN, STEPS, WIDTH
+from synthesis.fit.linkage.topology import POINT, Topology
+from synthesis.numerics.augmented_lagrangian import descend_constrained
+from synthesis.numerics.levenberg import Rows, descend
+from synthesis.numerics.portions import run_in_portions
+from synthesis.numerics.status import Status
+
+SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
+"""Weight of soft constraints, in the task's unit, and the tolerance of such descents."""
+
+INITIAL_WEIGHT, MAX_VIOLATION = 100.0, 1e-3
+"""Weight of enforced constraints in the first descent, and their maximum violation at the end, in their own units; the
+verification of the driven linkage decides about small ones."""
+
+MAX_ROUNDS, MAX_CONSTRAINED_STEPS = 8, 60
+"""Maximum number of descents under enforced constraints, with a multiplier update after each, and of steps of each."""
+
+PORTION_SIZE = 4
+"""Number of descents that a thread takes at a time."""
+
+HOP_SIZE, HOP_SPREAD = 0.1, 0.9
+"""Typical standard deviation of a node's perturbation, in shortest links at the node, and that of its logarithm."""
+
+HOP_RANK = 4.0
+"""Mean rank of the fits that are perturbed: better ones are perturbed more often."""
+
+MIN_GAIN_SHARE = 1e-3
+"""Share of its cost by which a fit must improve to replace its parent: less is the same minimum."""
+
+
+class Fit(NamedTuple):
+    """A linkage fitted to targets: unknowns (u,), inputs of the slots (slots,), and half its sum of squares."""
+
+    topology: Topology
+    x: Real
+    inputs: Real
+    cost: float = math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class FitTask:
+    """What linkages of any topology are fitted to.
+
+    Attributes
+    ----------
+    targets : float, shape (targets, 8)
+        Targets of the traced point, see :func:`build_point_targets`.
+    pack_limits : callable
+        Returns the setting of a topology with the limits on its linkages.
+    full_turn : bool
+        Whether the input turns through.
+    steps : int
+        Number of steps of the input at which the motion is constrained.
+    back, width : float
+        Weight of the way back, and δ of the robust form; see :mod:`synthesis.fit.linkage.residuals`.
+    rows : compiled function
+        Rows of the fit, of type :data:`synthesis.numerics.levenberg.ROWS`.
+    prefix : float, shape (k,)
+        Data that these rows expect before the setting of :func:`~synthesis.fit.linkage.residuals.compute_linkage_rows`.
+    prefix_margins : int
+        Number of margins that they write before its margins.
+    """
+
+    targets: Real
+    pack_limits: Callable[[Topology], Real]
+    full_turn: bool = True
+    steps: int = 36
+    back: float = 0.0
+    width: float = 0.0
+    rows: Rows = compute_linkage_rows
+    prefix: Real = field(default_factory=lambda: np.empty(0))
+    prefix_margins: int = 0
+
+    def pack_topology(self, topology: Topology) -> tuple[Real, Real]:
+        """Return targets and setting for a topology."""
+        targets, setting = self.targets.copy(), self.pack_limits(topology).copy()
+        targets[:, FIRST_NODE] = topology.point
+        setting[FULL_TURN], setting[STEPS], setting[BACK] = self.full_turn, self.steps, self.back
+        setting[WIDTH] = self.width
+        return targets, setting
+
+
+def build_point_targets(points: Complex, weights: Real) -> Real:
+    """Return rows of targets for places of the traced point, complex (points,), each at a free input."""
+    targets = np.zeros((len(points), TARGET_SIZE))
+    targets[:, KIND] = PLACE
+    targets[:, X], targets[:, Y], targets[:, ROOT] = points.real, points.imag, np.sqrt(weights)
+    targets[:, SLOT], targets[:, FREE] = np.arange(len(points)), 1.0
+    return targets
+
+
+def descend_softly(
+    fits: Sequence[Fit], task: FitTask, steps: int, tolerance: float = SOFT_TOLERANCE
+) -> list[Fit]:  # fmt: skip
+    """Descend at most ``steps`` steps with constraints as penalties, which may remain violated a little.
+
+    Fits that cannot close have an infinite cost.
+    """
+    packed = _pack_each(fits, task)
+
+    def descend_one(fit: Fit) -> Fit:
+        targets, setting, limits, most = packed[id(fit.topology)]
+        x, state = fit.x.copy(), np.concatenate([fit.inputs, np.zeros(limits)])
+        multipliers = np.zeros(limits + 1)
+        multipliers[limits] = SOFT_WEIGHT
+        cost, _ = descend(task.rows, x, targets, setting, multipliers, state, most, steps, tolerance)
+        return Fit(fit.topology, x, state[: len(fit.inputs)], cost)
+
+    return _run_each(descend_one, fits, PORTION_SIZE)
+
+
+def fit_constrained(
+    fits: Sequence[Fit], task: FitTask, rounds: int = MAX_ROUNDS, steps: int = MAX_CONSTRAINED_STEPS
+) -> list[Fit]:
+    """Refit linkages under all constraints; an infinite cost marks the fits that fail."""
+    packed = _pack_each(fits, task)
+
+    def descend_one(fit: Fit) -> Fit:
+        targets, setting, limits, most = packed[id(fit.topology)]
+        x, state, ended = fit.x.copy(), np.concatenate([fit.inputs, np.zeros(limits)]), np.empty(1)
+        status = descend_constrained(
+            task.rows, x, targets, setting, state, most, limits, EQUATION_COUNT, INITIAL_WEIGHT, rounds, steps, ended
+        )
+        inputs, margins = state[: len(fit.inputs)], state[len(fit.inputs) :]
+        failed = status == Status.IMPOSSIBLE or not margins.min() > -MAX_VIOLATION
+        return Fit(fit.topology, x, inputs, math.inf if failed else float(ended[0]))
+
+    return _run_each(descend_one, fits, 1)
+
+
+def _pack_each(fits: Sequence[Fit], task: FitTask) -> dict[int, tuple[Real, Real, int, int]]:
+    """Return targets, setting, and the numbers of margins and of rows, by the identity of the topologies."""
+    packed = {}
+    for topology in {fit.topology for fit in fits}:
+        targets, setting = task.pack_topology(topology)
+        limits = int(count_margins(setting)) + task.prefix_margins
+        most = int(count_rows(len(targets), setting)) + task.prefix_margins
+        packed[id(topology)] = targets, np.concatenate([task.prefix, setting]), limits, most
+    return packed
+
+
+def _run_each(descend_one: Callable[[Fit], Fit], fits: Sequence[Fit], portion: int) -> list[Fit]:
+    """Apply a descent to every fit, on two threads."""
+    ends: list[Fit] = list(fits)
+
+    def process_portion(rows: slice) -> None:
+        for k in range(*rows.indices(len(ends))):
+            ends[k] = descend_one(fits[k])
+
+    run_in_portions(process_portion, len(ends), portion)
+    return ends
+
+
+def sort_fits(fits: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that close, the nearest first."""
+    return sorted((fit for fit in fits if math.isfinite(fit.cost)), key=lambda fit: fit.cost)
+
+
+def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
+    """Move every node of a linkage at random, by ``size`` times the shortest link at the node."""
+    nodes, places = fit.topology.nodes, fit.x[: 2 * len(fit.topology.nodes)].reshape(-1, 2)
+    shortest = np.full(len(nodes), math.inf)
+    pairs = [*fit.topology.pairs]
+    # A point of a link, such as the traced one, is at a distance from the two pins that place it.
+    pairs += [np.array([k, end]) for k, (kind, *ends, _) in enumerate(nodes) if kind == POINT for end in ends]
+    for pair in pairs:
+        length = float(np.hypot(*(places[pair[0]] - places[pair[1]])))
+        shortest[pair] = np.minimum(shortest[pair], length)
+    # Views have no coordinates of their own.
+    shortest[~np.isfinite(shortest)] = 0.0
+    moved = fit.x.copy()
+    moved[: places.size] += (size * shortest[:, None] * rng.normal(size=places.shape)).ravel()
+    return fit._replace(x=moved, cost=math.inf)
+
+
+def hop_basins(
+    fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator
+) -> list[Fit]:  # fmt: skip
+    """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first."""
+    pool = sort_fits(fits)
+    if not pool:
+        return pool
+    parents = np.minimum(rng.exponential(HOP_RANK, hops).astype(np.int64), len(pool) - 1)
+    sizes = HOP_SIZE * np.exp(HOP_SPREAD * rng.normal(size=hops))
+    children = [perturb_fit(pool[k], float(size), rng) for k, size in zip(parents, sizes, strict=True)]
+    for parent, child in zip(parents, descend_softly(children, task, steps), strict=True):
+        if child.cost < (1.0 - MIN_GAIN_SHARE) * pool[parent].cost:
+            pool[parent] = child
+    return sort_fits(pool)

@@ -1,0 +1,410 @@
+"""Residuals of a linkage at targets, and along the curve of its traced point, in the form of a descent's rows.
+
+A target is a row (kind, i, j, a, b, root, slot, free):
+
+======= =================================================================================================
+kind    residuals
+======= =================================================================================================
+PLACE   node i minus (a, b), two rows
+TURN    rotation of the direction from node i to node j since the reference position, minus a, one row
+======= =================================================================================================
+
+They are multiplied by ``root``, the root of a weight. Targets of one slot are consecutive and share an input. A free
+input is eliminated: for each linkage it is moved to the position with the least squares of its slot, by Gauss–Newton
+steps from that of the last accepted linkage, and the Jacobian is that at a fixed input minus its part along the slot's
+derivative by the input (variable projection). Other inputs are constants.
+
+The *way back* are the distances of the traced point, at equal steps of the input, from the polyline through the points,
+weighted by the arc length that each step stands for.
+
+Instead of squares, the *robust* form sums w(√(d² + δ²) − δ), which is nearly the mean distance and lets corners be cut,
+and each point may be met anywhere on the curve, whatever the order of the points. With f = √(d² + δ²) a distance has
+the row √(w/f) d, whose gradient is exact; one more row without derivatives, √Σ w(f − δ)²/f, completes the sum.
+
+A linkage moves over a full turn of its input, or in a range whose ends are the last two unknowns (robust form) or the
+outermost inputs of the targets and of the reference position (squares). One that does not close throughout is refused.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinematics.arrays import Integers, Real
+from kinematics.compiling import njit
+from synthesis.fit.chart import OPTIONS
+from synthesis.fit.linkage.closure import (
+    CONSTANT_COUNT,
+    close_linkage,
+    compute_constants,
+    differentiate_input,
+    differentiate_nodes,
+)
+from synthesis.fit.linkage.margins import (
+    EQUATION_COUNT,
+    count_margins,
+    count_step_margins,
+    is_loaded,
+    spread_slopes,
+    write_static_margins,
+    write_step_gradients,
+    write_step_values,
+)
+from synthesis.fit.linkage.setting import BACK, FULL_TURN, STEPS, TRACED, WIDTH, unpack_table
+from synthesis.numerics.augmented_lagrangian import append_limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+PLACE, TURN = 0, 1
+"""Kinds of targets."""
+
+KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE = range(8)
+"""Columns of targets."""
+
+TARGET_SIZE = 8
+"""Number of columns of targets."""
+
+MAX_SETTLING_STEPS, MAX_INPUT_STEP, INPUT_TOLERANCE = 2, 0.25, 1e-7
+"""Maximum number of steps that settle an input at each linkage; the maximum step, and the step after which it is
+settled, radians."""
+
+MIN_SPEED = 1e-9
+"""Derivative of a slot's residuals by its input, task sizes per radian, below which the input changes nothing."""
+
+MAX_COORDINATE = 1e4
+"""Coordinate, in task sizes, beyond which a linkage is refused: its links would be nearly parallel."""
+
+SWITCH_SHARE = 0.98
+"""Share of a point's squared distance below which another step of the input becomes its nearest place; less than 1, so
+that equally near places do not alternate."""
+
+
+@njit(**OPTIONS)
+def count_rows(targets: int, setting: Real) -> int:
+    """Return the maximum number of rows for a number of targets."""
+    most: int = 2 * targets + int(setting[STEPS]) + count_margins(setting) + 1
+    return most
+
+
+@njit(**OPTIONS)
+def _measure_slot(
+    targets: Real, first: int, last: int, z: Real, places: Real, rates: Real, residuals: Real, tangent: Real
+) -> int:
+    """Write the residuals of a slot's targets and their derivatives by the input; return their number."""
+    m = 0
+    for t in range(first, last):
+        i, root = int(targets[t, FIRST_NODE]), targets[t, ROOT]
+        if targets[t, KIND] == PLACE:
+            for axis in range(2):
+                residuals[m] = root * (places[i, axis] - targets[t, X + axis])
+                tangent[m] = root * rates[i, axis]
+                m += 1
+        else:
+            j = int(targets[t, SECOND_NODE])
+            gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
+            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+            off = math.atan2(hx * gy - hy * gx, hx * gx + hy * gy) - targets[t, X]
+            # Rotations are compared modulo full turns.
+            off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+            residuals[m] = root * off
+            turn = gx * (rates[j, 1] - rates[i, 1]) - gy * (rates[j, 0] - rates[i, 0])
+            tangent[m] = root * turn / (gx * gx + gy * gy)
+            m += 1
+    return m
+
+
+@njit(**OPTIONS)
+def _settle_input(
+    targets: Real, first: int, last: int, nodes: Integers, z: Real, constants: Real, theta: float, low: float,
+    high: float, places: Real, rates: Real, cosines: Real, residuals: Real, tangent: Real,
+) -> float:  # fmt: skip
+    """Move an input towards the least squares of its slot, within [low, high]; NaN where the linkage does not close."""
+    for _ in range(MAX_SETTLING_STEPS):
+        if not close_linkage(nodes, z, constants, theta, places, cosines):
+            return math.nan
+        differentiate_input(nodes, z, constants, places, rates)
+        m = _measure_slot(targets, first, last, z, places, rates, residuals, tangent)
+        square, along = 0.0, 0.0
+        for k in range(m):
+            square += tangent[k] * tangent[k]
+            along += tangent[k] * residuals[k]
+        if square < MIN_SPEED * MIN_SPEED:
+            return theta
+        # Gauss–Newton: the curvature of the path is neglected, so that long steps are not to be trusted.
+        step = min(max(-along / square, -MAX_INPUT_STEP), MAX_INPUT_STEP)
+        moved = min(max(theta + step, low), high)
+        settled = abs(moved - theta) < INPUT_TOLERANCE
+        theta = moved
+        if settled:
+            break
+    return theta
+
+
+@njit(**OPTIONS)
+def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Real, slopes: Real, rows: Real) -> None:
+    """Write the derivatives of a slot's residuals by the unknowns, at a fixed input."""
+    count, m = slopes.shape[2] - 1, 0
+    for t in range(first, last):
+        i, root = int(targets[t, FIRST_NODE]), targets[t, ROOT]
+        if targets[t, KIND] == PLACE:
+            for axis in range(2):
+                rows[m] = 0.0
+                for c in range(count):
+                    rows[m, c] = root * slopes[i, axis, 1 + c]
+                m += 1
+        else:
+            j = int(targets[t, SECOND_NODE])
+            gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
+            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+            per, by_reference = root / (gx * gx + gy * gy), root / (hx * hx + hy * hy)
+            rows[m] = 0.0
+            for c in range(count):
+                dx, dy = slopes[j, 0, 1 + c] - slopes[i, 0, 1 + c], slopes[j, 1, 1 + c] - slopes[i, 1, 1 + c]
+                rows[m, c] = per * (gx * dy - gy * dx)
+            # The reference direction rotates with the unknowns, too.
+            rows[m, 2 * j] += by_reference * hy
+            rows[m, 2 * j + 1] -= by_reference * hx
+            rows[m, 2 * i] -= by_reference * hy
+            rows[m, 2 * i + 1] += by_reference * hx
+            m += 1
+
+
+@njit(**OPTIONS)
+def _eliminate_input(tangent: Real, m: int, rows: Real, turn: Real) -> None:
+    """Subtract the part along the input from the first m rows; ``turn`` receives the input's derivatives."""
+    square = 0.0
+    turn[:] = 0.0
+    for k in range(m):
+        square += tangent[k] * tangent[k]
+    if square < MIN_SPEED * MIN_SPEED:
+        return
+    for k in range(m):
+        for c in range(len(turn)):
+            turn[c] -= tangent[k] * rows[k, c] / square
+    for k in range(m):
+        for c in range(len(turn)):
+            rows[k, c] += tangent[k] * turn[c]
+
+
+@njit(**OPTIONS)
+def _weight_robustly(width: float, m: int, first: int, residuals: Real, jacobian: Real, root: float) -> float:
+    """Weight the rows from ``first`` to m of one distance for the robust sum; return the part that they leave out."""
+    square = 0.0
+    for k in range(first, m):
+        square += residuals[k] * residuals[k]
+    # Rows are multiplied by the root of the weight; the distance itself decides the rest.
+    far = math.sqrt(square / (root * root) + width * width)
+    for k in range(first, m):
+        residuals[k] /= math.sqrt(far)
+        jacobian[k] /= math.sqrt(far)
+    return root * root * (far - width) * (far - width) / far
+
+
+@njit(**OPTIONS)
+def find_nearest_side(x: float, y: float, targets: Real, closed: bool) -> tuple[float, float, float, float]:
+    """Return the vector from the nearest place of the polyline through targets to a point, and a direction across it.
+
+    The direction is that vector's, or the normal of the side for a point on it.
+    """
+    n, least = len(targets), np.inf
+    off_x, off_y, side_x, side_y = 0.0, 0.0, 0.0, 1.0
+    for k in range(n if closed else n - 1):
+        other = k + 1 if k + 1 < n else 0
+        sx, sy = targets[other, X] - targets[k, X], targets[other, Y] - targets[k, Y]
+        gx, gy = x - targets[k, X], y - targets[k, Y]
+        square = sx * sx + sy * sy
+        share = (gx * sx + gy * sy) / square if square > 0.0 else 0.0
+        # Beyond an end of the side its corner is nearest.
+        share = min(max(share, 0.0), 1.0)
+        ex, ey = gx - share * sx, gy - share * sy
+        far = ex * ex + ey * ey
+        if far < least:
+            least, off_x, off_y = far, ex, ey
+            if square > 0.0:
+                side_x, side_y = -sy / math.sqrt(square), sx / math.sqrt(square)
+    far = math.sqrt(least)
+    if far > MIN_SPEED:
+        side_x, side_y = off_x / far, off_y / far
+    return off_x, off_y, side_x, side_y
+
+
+@njit(**OPTIONS)
+def _trace_steps(
+    nodes: Integers, z: Real, constants: Real, low: float, per: float, point: int, places: Real, cosines: Real,
+    curve: Real,
+) -> bool:  # fmt: skip
+    """Write the traced point at equal steps of the input; return whether the linkage closes at all of them."""
+    for k in range(len(curve)):
+        if not close_linkage(nodes, z, constants, low + per * k, places, cosines):
+            return False
+        curve[k, 0], curve[k, 1] = places[point, 0], places[point, 1]
+    return True
+
+
+@njit(**OPTIONS)
+def _find_nearest_step(target: Real, curve: Real, theta: float, low: float, per: float, near: float) -> float:
+    """Return the input at the step of the curve that is nearest to a target, or θ if that is as near."""
+    least = SWITCH_SHARE * near
+    for k in range(len(curve)):
+        square = (curve[k, 0] - target[X]) ** 2 + (curve[k, 1] - target[Y]) ** 2
+        if square < least:
+            least, theta = square, low + per * k
+    return theta
+
+
+@njit(**OPTIONS)
+def _measure_arcs(curve: Real, closed: bool, arcs: Real) -> None:
+    """Write the share of the curve's length that each of its steps stands for."""
+    n, total = len(curve), 0.0
+    for k in range(n):
+        before = k - 1 if k > 0 else (n - 1 if closed else 0)
+        after = k + 1 if k + 1 < n else (0 if closed else n - 1)
+        arcs[k] = math.hypot(curve[after, 0] - curve[before, 0], curve[after, 1] - curve[before, 1])
+        total += arcs[k]
+    for k in range(n):
+        arcs[k] /= max(total, MIN_SPEED)
+
+
+@njit(ROWS, **OPTIONS)
+def compute_linkage_rows(
+    x: Real, targets: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Compute rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 if the linkage does not close.
+
+    Parameters
+    ----------
+    x : float, shape (2n,) or (2n + 2,)
+        Coordinates of the nodes, and the ends of the range of inputs if the input does not turn through.
+    targets : float, shape (targets, 8)
+        See the module's docstring.
+    setting : float
+        From :func:`synthesis.fit.linkage.setting.pack_topology`.
+    multipliers, residuals, jacobian
+        See :data:`synthesis.numerics.levenberg.ROWS`.
+    state : float, shape (slots + margins,)
+        Inputs of the slots, radians from the reference position, then the margins.
+    """
+    if not np.abs(x).max() < MAX_COORDINATE:
+        return -1
+    nodes, transmitting, pairs, pivots, pins = unpack_table(setting)
+    n, count, unknowns = len(nodes), len(targets), len(x)
+    point, steps, full = int(setting[TRACED]), int(setting[STEPS]), setting[FULL_TURN] > 0.0
+    width, robust = setting[WIDTH], setting[WIDTH] > 0.0
+    limits = count_margins(setting)
+    slots = len(state) - limits
+    constants, places, rates, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.empty((n, 2)), np.zeros(n)
+    slopes, tangent, turn = np.zeros((n, 2, 1 + 2 * n)), np.empty(2 * count), np.zeros(unknowns)
+    compute_constants(nodes, x, constants)
+    # A full turn has no ends: its last step would repeat the first.
+    low, high = -np.inf, np.inf
+    if not full and robust:
+        low, high = x[unknowns - 2], x[unknowns - 1]
+        if not low < high:
+            return -1
+    curve, arcs = np.empty((steps, 2)), np.empty(steps)
+    begin, per = 0.0, 2.0 * math.pi / max(steps, 1)
+    if not full and robust:
+        begin, per = low, (high - low) / max(steps - 1, 1)
+    if robust and not _trace_steps(nodes, x, constants, begin, per, point, places, cosines, curve):
+        return -1
+    left_out, m, first = 0.0, 0, 0
+    first_places, first_slopes = np.empty((n, 2)), np.empty((n, 2, unknowns))
+    while first < count:
+        slot, free = int(targets[first, SLOT]), targets[first, FREE] > 0.0
+        last = first + 1
+        while last < count and int(targets[last, SLOT]) == slot:
+            last += 1
+        theta = state[slot]
+        if robust:
+            near = np.inf
+            if low <= theta <= high and close_linkage(nodes, x, constants, theta, places, cosines):
+                near = (places[point, 0] - targets[first, X]) ** 2 + (places[point, 1] - targets[first, Y]) ** 2
+            theta = _find_nearest_step(targets[first], curve, theta, begin, per, near)
+        if free:
+            theta = _settle_input(
+                targets, first, last, nodes, x, constants, theta, low, high, places, rates, cosines, residuals[m:],
+                tangent,
+            )  # fmt: skip
+        # Negated: NaN means that the linkage does not close.
+        if not abs(theta) < np.inf or not close_linkage(nodes, x, constants, theta, places, cosines):
+            return -1
+        state[slot] = theta
+        differentiate_nodes(nodes, x, constants, theta, places, slopes)
+        for k in range(n):
+            rates[k, 0], rates[k, 1] = slopes[k, 0, 0], slopes[k, 1, 0]
+        added = _measure_slot(targets, first, last, x, places, rates, residuals[m:], tangent)
+        _write_slot_slopes(targets, first, last, x, places, slopes, jacobian[m:])
+        turn[:] = 0.0
+        if free and low < theta < high:
+            _eliminate_input(tangent, added, jacobian[m:], turn)
+        elif free:
+            # At an end of the range the input moves with it.
+            end = unknowns - 2 if theta <= low else unknowns - 1
+            turn[end] = 1.0
+            for k in range(added):
+                jacobian[m + k, end] += tangent[k]
+        if first == 0:
+            first_places[:] = places
+            for k in range(n):
+                for axis in range(2):
+                    first_slopes[k, axis] = 0.0
+                    for c in range(2 * n):
+                        first_slopes[k, axis, c] = slopes[k, axis, 1 + c]
+                    for c in range(unknowns):
+                        first_slopes[k, axis, c] += slopes[k, axis, 0] * turn[c]
+        if robust:
+            left_out += _weight_robustly(width, m + added, m, residuals, jacobian, targets[first, ROOT])
+        m, first = m + added, last
+    if not full and not robust:
+        # The range follows the targets; its ends are constants of the descent.
+        begin, high = min(0.0, state[:slots].min()), max(0.0, state[:slots].max())
+        per = (high - begin) / max(steps - 1, 1)
+    values, gradients = state[slots:], np.empty((limits, unknowns))
+    values[:] = np.inf
+    number = write_static_margins(
+        x, pairs, pivots, pins, first_places, first_slopes, setting, multipliers, values, gradients
+    )
+    step_count, hand, back = count_step_margins(transmitting, setting), 0.0, setting[BACK]
+    if back > 0.0:
+        if not robust and not _trace_steps(nodes, x, constants, begin, per, point, places, cosines, curve):
+            return -1
+        _measure_arcs(curve, full, arcs)
+    by_ends = np.zeros(2)
+    for k in range(steps):
+        theta = begin + per * k
+        if not close_linkage(nodes, x, constants, theta, places, cosines):
+            return -1
+        sine = write_step_values(transmitting, pins, places, cosines, setting, number, values)
+        # A sign change between two steps means that a triad has passed a toggle, where the input turns back.
+        if hand * sine < 0.0:
+            return -1
+        hand = sine
+        loaded = is_loaded(number, step_count, multipliers, values)
+        if loaded or back > 0.0:
+            differentiate_nodes(nodes, x, constants, theta, places, slopes)
+            if not full and robust:
+                by_ends[1] = k / max(steps - 1.0, 1.0)
+                by_ends[0] = 1.0 - by_ends[1]
+        if loaded:
+            write_step_gradients(
+                nodes, x, constants, transmitting, pins, places, slopes, by_ends, cosines, setting, number, values,
+                gradients,
+            )  # fmt: skip
+        if back > 0.0:
+            off_x, off_y, side_x, side_y = find_nearest_side(places[point, 0], places[point, 1], targets, full)
+            root = math.sqrt(back * arcs[k])
+            residuals[m] = root * (off_x * side_x + off_y * side_y)
+            spread_slopes(slopes[point, 0], by_ends, root * side_x, jacobian[m])
+            for c in range(2 * n):
+                jacobian[m, c] += root * side_y * slopes[point, 1, 1 + c]
+            for c in range(2 * n, unknowns):
+                jacobian[m, c] += root * side_y * by_ends[c - 2 * n] * slopes[point, 1, 0]
+            if robust and root > 0.0:
+                left_out += _weight_robustly(width, m + 1, m, residuals, jacobian, root)
+            m += 1
+        number += step_count
+    if robust:
+        residuals[m] = math.sqrt(left_out)
+        jacobian[m] = 0.0
+        m += 1
+    return append_limit_rows(values, gradients, EQUATION_COUNT, multipliers, residuals, jacobian, m)

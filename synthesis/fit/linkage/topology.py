@@ -1,0 +1,245 @@
+"""Topologies of linkages that one crank drives, as tables of nodes.
+
+A node is a pin, or a point of a link. Its row (kind, i, j, k) says how it follows from earlier nodes:
+
+====== ========= ================================================================================
+kind   nodes     position
+====== ========= ================================================================================
+FIXED            constant
+CRANK  i         rotates about node i with the input
+DYAD   i, j      joins two links, one of which goes through i and the other through j
+POINT  i, j      fixed on the link through i and j
+VIEW   i, j, k   that of node i, seen from the link through j and k, as if this link kept its reference position
+====== ========= ================================================================================
+
+A linkage of dyads grows from ground and crank: each dyad adds two links, the first of which is joined to one earlier
+link and the second to another. Links are numbered: 0 is the ground, 1 the crank, 2m and 2m + 1 those of dyad m. The
+first dyad is joined to the crank and the ground, so that the linkage begins with a fourbar O2 A B O4.
+
+A Stephenson II is no chain of dyads on its ground, but it is one on its input link (inversion): its row of views shows
+the joints as the ground sees them. It is driven by link 3, relative to the input.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from kinematics.arrays import Integers, Mask
+
+FIXED, CRANK, DYAD, POINT, VIEW = range(5)
+"""Kinds of nodes."""
+
+GROUND, INPUT, COUPLER, ROCKER = range(4)
+"""Numbers of the links of the first fourbar."""
+
+Dyads = tuple[tuple[int, int], ...]
+"""The links to which the first and the second link of each dyad are joined."""
+
+FIRST_DYAD = (INPUT, GROUND)
+"""The dyad that makes a fourbar of ground and crank."""
+
+
+@dataclass(frozen=True, eq=False)
+class Topology:
+    """A topology: its nodes, and which links they belong to.
+
+    Attributes
+    ----------
+    nodes : int, shape (n, 4)
+        Rows of the table in the module's docstring; unused entries are 0.
+    links : dict of str to tuple of int
+        Pins of each link by its name; the ground is the first link.
+    body : str
+        Name of the link that has the traced point.
+    point : int
+        Node of the traced point, as the ground sees it.
+    joints : dict of str to int
+        Nodes of all joints as the ground sees them, by name.
+    families : tuple of int
+        Pairs of the first fourbar in :attr:`pairs`: ground, input, coupler, output. Empty if the input is not its
+        crank.
+    triad : tuple of int
+        Nodes q, j, O₂, A, O₄, B of the triad that transmits the force (:mod:`synthesis.fit.triad_slant`); empty if
+        dyads do.
+    """
+
+    nodes: Integers
+    links: dict[str, tuple[int, ...]]
+    body: str
+    point: int
+    joints: dict[str, int]
+    families: tuple[int, ...] = ()
+    triad: tuple[int, ...] = ()
+
+    @property
+    def pairs(self) -> Integers:
+        """All pairs of pins of one link, shape (pairs, 2), each once."""
+        found = [pair for pins in self.links.values() for pair in combinations(pins, 2)]
+        return np.array(found, np.int64)
+
+    @property
+    def pin_names(self) -> dict[int, str]:
+        """Names of the joints by the nodes in :attr:`links`, which are not their views."""
+        return {int(self.nodes[k, 1] if self.nodes[k, 0] == VIEW else k): name for name, k in self.joints.items()}
+
+    @property
+    def transmitting(self) -> Mask:
+        """Which nodes are dyads whose angles transmit the force, shape (n,)."""
+        # Seen from the input link of a Stephenson II, dyads are not what the force goes through; its triad is.
+        dyads = self.nodes[:, 0] == DYAD
+        return np.zeros_like(dyads) if self.triad else dyads
+
+    @property
+    def fixed_pivots(self) -> tuple[int, ...]:
+        """Nodes of the fixed pivots, that of the input first."""
+        return next(iter(self.links.values()))
+
+    @property
+    def moving_pins(self) -> tuple[int, ...]:
+        """Nodes of the moving pins, as the ground sees them."""
+        still = {*self.fixed_pivots, self.point}
+        return tuple(node for node in self.joints.values() if node not in still)
+
+
+def build_topology(dyads: Dyads) -> Topology:
+    """Build the topology of a chain of dyads; the traced point is on the first link of the last dyad.
+
+    Parameters
+    ----------
+    dyads : tuple of pairs of int
+        The links to which each dyad is joined, :data:`FIRST_DYAD` first.
+    """
+    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, 0)]
+    names = ["O2", "A"]
+    pins: dict[int, list[int]] = {GROUND: [0], INPUT: [0, 1]}
+    # A and B are the pins of the first dyad; those of the next dyads follow in the alphabet, P excepted.
+    letters = iter("BCDEFGHIJKLMN")
+    for number, joined in enumerate(dyads, 1):
+        ends = []
+        for link in joined:
+            if number == 1 and link == INPUT:
+                ends.append(1)
+                continue
+            # A dyad never shares a pin with an earlier one: every joint connects two links.
+            rows.append((FIXED,) if link == GROUND else (POINT, *pins[link][:2]))
+            names.append(f"O{2 * number + 2}" if link == GROUND else next(letters))
+            pins[link].append(len(rows) - 1)
+            ends.append(len(rows) - 1)
+        rows.append((DYAD, *ends))
+        names.append(next(letters))
+        pins[2 * number], pins[2 * number + 1] = ([end, len(rows) - 1] for end in ends)
+    body = 2 * len(dyads)
+    rows.append((POINT, *pins[body][:2]))
+    names.append("P")
+    link_names = _name_links(dyads)
+    return Topology(
+        nodes=_pad_rows(rows),
+        links={link_names[link]: tuple(listed) for link, listed in sorted(pins.items())},
+        body=link_names[body],
+        point=len(rows) - 1,
+        joints={name: node for node, name in enumerate(names)},
+        families=_find_first_fourbar(pins),
+    )
+
+
+def _pad_rows(rows: list[tuple[int, ...]]) -> Integers:
+    """Return a table of rows with 0 in the entries that their kinds do not use."""
+    return np.array([[*row, *(0,) * (4 - len(row))] for row in rows], np.int64)
+
+
+def _name_links(dyads: Dyads) -> list[str]:
+    """Return the names of the links by number."""
+    names = ["ground", "input", "coupler", "output", *(f"link_{k + 1}" for k in range(4, 2 * len(dyads) + 2))]
+    # The output of a linkage is the last of its links that is joined to the ground.
+    grounded = [2 * m + 1 for m, joined in enumerate(dyads, 1) if joined[1] == GROUND]
+    if grounded[-1] != ROCKER:
+        names[ROCKER], names[grounded[-1]] = "rocker", "output"
+    return names
+
+
+def _find_first_fourbar(pins: dict[int, list[int]]) -> tuple[int, ...]:
+    """Return the pairs of ground, input, coupler and output of the first fourbar, by their rank among all pairs."""
+    pairs = [pair for _, listed in sorted(pins.items()) for pair in combinations(listed, 2)]
+    return tuple(pairs.index((pins[link][0], pins[link][1])) for link in (GROUND, INPUT, COUPLER, ROCKER))
+
+
+STEPHENSON_2_BODIES = {"link_3": (0, 1), "link_4": (1, 3), "link_5": (2, 3)}
+"""Links of a Stephenson II that may carry the point, with the two nodes of :func:`build_stephenson_2` on them."""
+
+
+def build_stephenson_2(body: str) -> Topology:
+    """Build a Stephenson II as its input link sees it, with the views that the ground has of its joints.
+
+    Link 3 rotates about A relative to the input and drives the fourbar A B D C; the output, from E on link 4, and the
+    ground O4 O2 are a dyad.
+    """
+    a, b, c, d, e, o2, o4, p = range(8)
+    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, a), (FIXED,), (DYAD, b, c), (POINT, b, d), (FIXED,), (DYAD, e, o2)]
+    rows.append((POINT, *STEPHENSON_2_BODIES[body]))
+    moving = {"A": a, "B": b, "C": c, "D": d, "E": e, "P": p}
+    rows += [(VIEW, node, o2, o4) for node in moving.values()]
+    seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
+    links = {"ground": (o2, o4), "input": (o2, a, c), "link_3": (a, b), "link_4": (b, d, e), "link_5": (c, d)}
+    return Topology(
+        nodes=_pad_rows(rows),
+        links=links | {"output": (o4, e)},
+        body=body,
+        point=seen["P"],
+        joints={"O2": o2, "O4": o4} | seen,
+        triad=(e, o4, a, b, c, d),
+    )
+
+
+SIXBAR_FORMS: dict[str, tuple[Topology, ...]] = {
+    "watt_1": tuple(
+        build_topology((FIRST_DYAD, pair))
+        for pair in ((COUPLER, ROCKER), (ROCKER, COUPLER), (COUPLER, INPUT), (INPUT, COUPLER))
+    ),
+    "stephenson_1": tuple(build_topology((FIRST_DYAD, pair)) for pair in ((INPUT, ROCKER), (ROCKER, INPUT))),
+    "stephenson_2": tuple(map(build_stephenson_2, ("link_4", "link_3", "link_5"))),
+    "stephenson_3": (build_topology((FIRST_DYAD, (COUPLER, GROUND))),),
+}
+"""Topologies of sixbars whose traced point is on a link that is joined neither to the ground nor to the fourbar alone,
+or on any moving link of a Stephenson II."""
+
+
+def list_chains(dyad_count: int) -> list[Topology]:
+    """Return all topologies of a number of dyads in which every dyad moves the traced point."""
+    chains: list[Dyads] = [(FIRST_DYAD,)]
+    for number in range(2, dyad_count + 1):
+        last, links = number == dyad_count, range(2 * number)
+        # Only for the last dyad the order of its links matters: the point is on the first, which must not be grounded.
+        chains = [
+            (*chain, (i, j))
+            for chain in chains
+            for i in links
+            for j in links
+            if i != j and (i != GROUND if last else i < j)
+        ]
+    return [build_topology(_ground_second(chain)) for chain in chains if _moves_point(chain)]
+
+
+def _ground_second(chain: Dyads) -> Dyads:
+    """Return the chain with the second link of each dyad joined to the ground, if one is."""
+    # The order of a dyad's links only changes their numbers, which later dyads refer to: exchange these as well.
+    renumbered: list[tuple[int, int]] = []
+    numbers = {GROUND: GROUND, INPUT: INPUT}
+    for m, joined in enumerate(chain, 1):
+        exchanged = joined[0] == GROUND
+        renumbered.append(tuple(numbers[link] for link in (joined[::-1] if exchanged else joined)))  # type: ignore[arg-type]
+        numbers[2 * m], numbers[2 * m + 1] = (2 * m + 1, 2 * m) if exchanged else (2 * m, 2 * m + 1)
+    return tuple(renumbered)
+
+
+def _moves_point(chain: Dyads) -> bool:
+    """Return whether every dyad is between the traced point and the crank."""
+    needed, waiting = set[int](), [len(chain)]
+    while waiting:
+        number = waiting.pop()
+        if number not in needed:
+            needed.add(number)
+            waiting += [link // 2 for link in chain[number - 1] if link > INPUT]
+    return len(needed) == len(chain)
