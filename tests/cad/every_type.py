@@ -10,7 +10,7 @@ from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.stated.linkages import MOTION as THREE
 from tests.service.stated.sixbars import DWELL as PLACED_DWELL
 from tests.service.stated.sixbars import FUNCTION
-from tests.service.stated.sixbars import PATH as OPEN_PATH
+from tests.service.stated.sixbars import PATH as FITTED_PATH
 from tests.support.service.parts import MOTION, SLIDER
 from tests.support.service.parts_of_barrels import BARREL
 from tests.support.service.parts_of_cams import PROBLEMS as DRIVES
@@ -76,10 +76,10 @@ MADE: dict[Key, Row] = {
             )],
         }
     ),
-    ("path", "watt_1"): _sixbar(SIXBAR_PATH, "watt_1"),
-    ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
-    ("path", "stephenson_2"): _sixbar(OPEN_PATH, "stephenson_2"),
-    ("path", "stephenson_3"): _sixbar(SIXBAR_PATH, "stephenson_3"),
+    ("path", "watt_1"): _sixbar(FITTED_PATH, "watt_1"),
+    ("path", "stephenson_1"): _sixbar(FITTED_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
+    ("path", "stephenson_2"): _sixbar(FITTED_PATH, "stephenson_2"),
+    ("path", "stephenson_3"): _sixbar(FITTED_PATH, "stephenson_3"),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
     ("quick_return", "crank_shaper"): _quick("crank_shaper", stroke=100.0),
@@ -103,8 +103,18 @@ MADE: dict[Key, Row] = {
     ("train_series", "train_series"): Row(
         {"kind": "train_series", "ratio": "6", "units": [{"type": "gear_train", "max_stages": 1}] * 2, "max_designs": 1}
     ),
-    ("gearbox", "gearbox"): _example("gearbox", "gearbox"),
-    ("layshaft_gearbox", "layshaft_gearbox"): _example("layshaft_gearbox", "layshaft_gearbox"),
+    ("gearbox", "gearbox"): Row(
+        {
+            "kind": "gearbox", "input_speed": 200.0, "speeds": {"min": 100.0, "ratio": 1.25, "count": 6},
+            "tooth_sum": {"min": 40, "max": 60}, "max_designs": 1,
+        }
+    ),
+    ("layshaft_gearbox", "layshaft_gearbox"): Row(
+        {
+            "kind": "layshaft_gearbox", "ratios": [2.0, 1.0], "reverse": 2.2, "teeth": {"min": 14, "max": 40},
+            "tooth_sum": {"min": 36, "max": 50}, "interference": "report", "module": 3.0, "max_designs": 1,
+        }
+    ),
     ("function", "fourbar"): _example("function", "fourbar"),
     ("function", "slider_crank"): Row(
         {

@@ -21,6 +21,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.arrays import Real
 from service.parts.assembly.model import Assembly, Part
@@ -103,9 +104,7 @@ def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) ->
         different = _different(towards, rounding)
         one_surface = together or frozenset((one.name, other.name)) in whole.touching
         worst: Shared | None = None
-        for k in different:
-            if not _near(boxes[n], boxes[m], towards[k]):
-                continue
+        for k in different[_near(boxes[n], boxes[m], towards[different])]:
             second = meshes[m].transform(np.ascontiguousarray(towards[k, :3]))
             if not _meet(boxes[n], _box(second)):
                 continue
@@ -155,11 +154,11 @@ def _different(towards: Real, rounding: float) -> Real:
     return first
 
 
-def _near(one: Real, other: Real, towards: Real) -> bool:
-    """Whether the box of the first meets the one about the box of the second where it is moved to."""
-    middle = towards[:3, :3] @ other.mean(axis=0) + towards[:3, 3]
-    half = np.abs(towards[:3, :3]) @ (0.5 * (other[1] - other[0]))
-    return _meet(one, np.stack([middle - half, middle + half]))
+def _near(one: Real, other: Real, towards: Real) -> NDArray[np.bool_]:
+    """Return at which places the box of the first meets the one about the box of the second where it is moved to."""
+    middles = towards[:, :3, :3] @ other.mean(axis=0) + towards[:, :3, 3]
+    halves = np.abs(towards[:, :3, :3]) @ (0.5 * (other[1] - other[0]))
+    return ((middles - halves < one[1]) & (one[0] < middles + halves)).all(axis=1)
 
 
 def _box(mesh: Manifold) -> Real:

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import json
 import subprocess
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tests.support.service.running import ROOT
+
+if TYPE_CHECKING:
+    from lib3mf.Lib3MF import Wrapper
 
 VALIDATED = """
 const {validateBytes} = require("gltf-validator");
@@ -35,9 +40,7 @@ def assert_valid_glb(content: bytes) -> None:
 
 def assert_valid_3mf(content: bytes) -> None:
     """The library reads it strictly without a warning, and finds one closed mesh."""
-    from lib3mf import Lib3MF
-
-    model = Lib3MF.Wrapper(str(Path(Lib3MF.__file__).with_name("lib3mf"))).CreateModel()
+    model = _load_lib3mf().CreateModel()
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)
     reader.ReadFromBuffer(content)
@@ -46,3 +49,10 @@ def assert_valid_3mf(content: bytes) -> None:
     assert meshes.MoveNext()
     assert meshes.GetCurrentMeshObject().IsManifoldAndOriented()
     assert not meshes.MoveNext()
+
+
+@cache
+def _load_lib3mf() -> Wrapper:
+    from lib3mf import Lib3MF
+
+    return Lib3MF.Wrapper(str(Path(Lib3MF.__file__).with_name("lib3mf")))

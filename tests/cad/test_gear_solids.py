@@ -23,13 +23,12 @@ from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed
 from tests.cad.readers import assert_valid_glb
-from tests.support.service.parts_of_gears import PAIR, SET
+from tests.support.service.parts_of_gears import SET
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("gear_solids")]
 
 STAGE = {"kind": "gear_train", "max_designs": 1}
 PROBLEMS: dict[str, dict[str, Any]] = {
-    "pair": PAIR,
     "reverted": {**STAGE, "ratio": "6", "max_stages": 2, "reverted": True, "teeth": {"min": 17, "max": 60}},
     "shifted": {**STAGE, "ratio": "2", "max_stages": 1, "centre_distance": 31.0, "teeth": {"min": 15, "max": 45}},
     "internal": {**STAGE, "ratio": "3", "stages": [{"type": "internal"}]},
@@ -74,7 +73,7 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
     assert_valid_glb(cad.write_glb(list(solids(name).values()), "assembly"))
 
 
-@pytest.mark.parametrize("name", ["pair", "internal"])
+@pytest.mark.parametrize("name", ["shifted", "internal"])
 def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
     from build123d import GeomType, import_step
 
