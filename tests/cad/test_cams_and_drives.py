@@ -29,7 +29,7 @@ from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.support.service.parts_of_barrels import BARREL
 from tests.support.service.parts_of_cams import PROBLEMS
 
-pytestmark = [pytest.mark.cad, pytest.mark.timeout(600), pytest.mark.xdist_group("cams_and_drives")]
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(600)]
 
 ALL = {**PROBLEMS, "barrel": BARREL}
 OTHERS = ("arm", "flat", "flat_arm", "groove", "conjugate")

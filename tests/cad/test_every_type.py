@@ -41,9 +41,9 @@ pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
 ALL = {**MADE, **STAGES}
 
 
-def _row(key: tuple[str, str], name: str = "") -> Any:
-    """A design as a parameter; whatever is asked of it is asked in one process."""
-    return pytest.param(key, id=name or "-".join(key), marks=pytest.mark.xdist_group("-".join(key)))
+def _row(key: tuple[str, str]) -> Any:
+    """Return a design as a parameter, whose id decides the process: all tests of a design run in one."""
+    return pytest.param(key, id="-".join(key))
 
 
 ROWS = [_row(key) for key in MADE]
@@ -226,7 +226,7 @@ def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) 
     return found
 
 
-@pytest.mark.parametrize("key", [_row(key, key[1]) for key in ONE_OF_EACH_TYPE.values()], scope="module")
+@pytest.mark.parametrize("key", [_row(key) for key in ONE_OF_EACH_TYPE.values()], scope="module")
 def test_the_kernel_sees_no_plate_in_another(key: tuple[str, str]) -> None:
     """Which has true arcs where a mesh has chords."""
     whole = assembly(key)

@@ -25,7 +25,7 @@ from tests.cad.meshes import looked_through, meshed
 from tests.cad.readers import assert_valid_glb
 from tests.support.service.parts_of_gears import SET
 
-pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("gear_solids")]
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
 
 STAGE = {"kind": "gear_train", "max_designs": 1}
 PROBLEMS: dict[str, dict[str, Any]] = {

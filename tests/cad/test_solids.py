@@ -31,7 +31,7 @@ from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.support.service.parts import MOTION, SLIDER
 from tests.support.service.parts_of_geared_linkages import planted
 
-pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("solids")]
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
 
 PROBLEMS: dict[str, dict[str, Any]] = {
     "fourbar": MOTION,

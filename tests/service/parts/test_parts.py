@@ -13,8 +13,6 @@ from service.parts.export.cad_available import is_installed
 from tests.support.service.answers import finished
 from tests.support.service.parts import DRIVEN, MOTION, SIZES, SLIDER, THREE, bill, parts, refused
 
-pytestmark = pytest.mark.xdist_group("parts")
-
 
 @pytest.fixture(scope="module")
 def jobs(server: Any) -> dict[str, str]:
