@@ -11,7 +11,7 @@ from synthesis.registry import KINDS, list_examples
 from tests.support.service.running import SCRIPTED, RunningServer
 from tests.support.service.variations import variations
 
-ANALYSES = {family.request.__name__: family.request.model_json_schema()["examples"][0] for family in list_families()}
+ANALYSES = {family.request.__name__: family.request.get_example() for family in list_families()}
 
 
 @pytest.fixture(scope="module")
