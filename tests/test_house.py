@@ -8,6 +8,7 @@ import importlib.util
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -31,7 +32,8 @@ OURS = {"benchmarks", "kinematics", "mechsynth", "service", "synthesis", "tests"
 HEAVY = {"numba", "scipy", "cvxpy", "highspy", "ezdxf", "PIL"}
 
 
-def imports(path: Path) -> set[str]:
+@cache
+def imports(path: Path) -> frozenset[str]:
     """The modules and names that a file imports, wherever in it."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
@@ -39,7 +41,7 @@ def imports(path: Path) -> set[str]:
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             found |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return found
+    return frozenset(found)
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
@@ -190,9 +192,12 @@ ASKED_BY_NAME = {
 
 def calls(path: Path, *names: str) -> list[ast.Call]:
     """The calls of functions and methods with these names in a file."""
+    text = path.read_text("utf-8")
+    if not any(f"{name}(" in text for name in names):
+        return []
     return [
         node
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.Call)
         and (
             (isinstance(node.func, ast.Name) and node.func.id in names)
@@ -217,6 +222,7 @@ def test_designs_are_sorted_in_one_module() -> None:
     sorting = {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "synthesis").rglob("*.py")
+        if "key=" in path.read_text("utf-8")
         for call in calls(path, "sorted", "sort", "min", "max")
         for keyword in call.keywords
         if keyword.arg == "key" and re.search(r"\bdesign\b|\.metrics\b|\.verification\b", ast.unparse(keyword.value))
