@@ -8,7 +8,7 @@ import pytest
 
 from service.server.app import build_api_document
 from synthesis.registry import KINDS, list_examples
-from tests.support.service.running import RunningServer
+from tests.support.service.running import LEAN, RunningServer
 
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"
@@ -51,7 +51,7 @@ def test_every_example_has_the_generated_type(compiled):
 
 
 def test_the_generated_client_solves_a_problem(compiled, tmp_path):
-    server = RunningServer(tmp_path)
+    server = RunningServer(tmp_path, LEAN, workers=1)
     try:
         said = json.loads(run(compiled, "node", "client.js", server.url))
     finally:

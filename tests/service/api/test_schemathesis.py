@@ -12,7 +12,7 @@ import pytest
 from service.server.app import build_api_document
 from synthesis.registry import get_first_example
 from tests.support.service.access import client_with, made
-from tests.support.service.running import RunningServer
+from tests.support.service.running import LEAN, RunningServer
 
 QUICKLY_SOLVED = ("motion", "gear_train", "planetary_train", "cam", "function", "straight_line")
 SOLIDS = ("make_parts", "export_assembly_step", "export_assembly_glb")
@@ -36,7 +36,9 @@ def kept(tmp_path_factory):
     """A service with a key, jobs that end soon whatever is asked, and a finished job of some kinds."""
     folder = tmp_path_factory.mktemp("schemathesis")
     key = made(folder, "acme")
-    server = RunningServer(folder, workers=1, rate_limit="off", job_timeout_s=60, max_wait_s=1, log_level="warning")
+    server = RunningServer(
+        folder, LEAN, workers=1, rate_limit="off", job_timeout_s=60, max_wait_s=1, log_level="warning"
+    )
     server.key = key
     try:
         with client_with(server, key) as client:
