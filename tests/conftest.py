@@ -10,7 +10,7 @@ pytest.register_assert_rewrite("tests.support")
 
 from tests import campaign  # noqa: E402
 from tests.cluster import backend  # noqa: E402
-from tests.support import cpu_time  # noqa: E402
+from tests.support import cpu_time, session_folder  # noqa: E402
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
@@ -46,6 +46,7 @@ def pytest_report_header(config):
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
     campaign.choose_budget(config.getoption("--campaign-minutes"))
+    config.add_cleanup(session_folder.create())
     if cpu_time.is_requested(config):
         config.pluginmanager.register(cpu_time.CpuTimePlugin(config), "cpu-time")
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from service.server.app import build_api_document
 from synthesis.registry import get_first_example
 from tests.support.service.access import client_with, made
+from tests.support.service.api_document import read_api_document
 from tests.support.service.running import LEAN, RunningServer
 
 QUICKLY_SOLVED = ("motion", "gear_train", "planetary_train", "cam", "function", "straight_line")
@@ -117,7 +117,7 @@ REMOVING = ("--include-method", "DELETE")
 
 @pytest.fixture(scope="module")
 def operations():
-    paths = json.loads(build_api_document())["paths"]
+    paths = read_api_document()["paths"]
     return sum(len(methods) for methods in paths.values())
 
 
