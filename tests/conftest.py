@@ -12,7 +12,8 @@ from tests import campaign  # noqa: E402
 from tests.cluster import backend  # noqa: E402
 from tests.support import cpu_time, session_folder  # noqa: E402
 
-settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=25)
+settings.register_profile("thorough", deadline=None, derandomize=True, max_examples=100)
 settings.load_profile("repeatable")
 
 
