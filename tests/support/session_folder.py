@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import shutil
 import tempfile
 from collections.abc import Callable
@@ -34,12 +35,35 @@ def read_or_build(name: str, build: Callable[[], Any]) -> Any:
 
     Processes that ask at the same time build it each; all of them write the same.
     """
-    place = Path(os.environ[VARIABLE]) / f"{name}.json" if VARIABLE in os.environ else None
+    place = _find_place(f"{name}.json")
     if place is not None and place.exists():
-        return json.loads(place.read_text("utf-8"))
+        return json.loads(place.read_bytes())
     value = build()
     if place is not None:
-        scratch = place.with_suffix(f".{os.getpid()}")
-        scratch.write_text(json.dumps(value), "utf-8")
-        scratch.replace(place)
+        _write(place, json.dumps(value).encode())
     return value
+
+
+def read_pickle(name: str) -> Any | None:
+    """Return what another process of the session has kept by this name, or None."""
+    place = _find_place(f"{name}.pickle")
+    return pickle.loads(place.read_bytes()) if place is not None and place.exists() else None
+
+
+def keep_pickle(name: str, value: object) -> None:
+    """Keep a value for other processes of the session."""
+    place = _find_place(f"{name}.pickle")
+    if place is not None:
+        _write(place, pickle.dumps(value))
+
+
+def _find_place(name: str) -> Path | None:
+    """Return the path of a file in the folder; None outside a session."""
+    return Path(os.environ[VARIABLE]) / name if VARIABLE in os.environ else None
+
+
+def _write(place: Path, content: bytes) -> None:
+    """Write a file at once, so that nobody reads a part of it."""
+    scratch = place.with_suffix(f".{os.getpid()}")
+    scratch.write_bytes(content)
+    scratch.replace(place)
