@@ -34,11 +34,11 @@ MULTIBODY := $(VENV)/.multibody
 SITE   := $(VENV)/.site
 CAD    := $(VENV)/.cad
 
-# Test files are distributed over two processes.
-SPREAD := -n 2 --dist loadfile
-# Tests that have a target of their own are deselected; those in the ignored folders are not even imported.
+# Test files are distributed over two processes, in the order of tests/conftest.py.
+SPREAD := -n 2 --dist loadfile --no-loadscope-reorder
+# Tests that have a target of their own are deselected. Folders with nothing else are not even imported.
 APART := not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad
-BESIDES := --ignore tests/browser --ignore tests/cad
+BESIDES := $(addprefix --ignore tests/,browser cad cluster faults node)
 
 export PYTHONDONTWRITEBYTECODE :=
 
@@ -87,7 +87,7 @@ engines:
 TIMED := tests/browser/test_smoothness.py
 
 test-browser: $(STAMP) $(NODE) chromium
-	$(BIN)/pytest -m "browser and not campaign" $(SPREAD) --ignore $(TIMED)
+	$(BIN)/pytest -m "browser and not campaign" $(SPREAD) --ignore $(TIMED) tests/browser tests/node
 	$(BIN)/pytest -m browser $(TIMED)
 
 chromium:
@@ -111,11 +111,11 @@ $(VENV)/.cad-tests: requirements.lock pyproject.toml $(INSTALLER)/uv.toml
 
 # Time limit for the random cases, minutes. The cases in the browser get about a quarter of it in addition.
 MINUTES := 4
-BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr $(MINUTES) / 4 + 1))
+BROWSER_MINUTES := $(if $(filter inf,$(MINUTES)),inf,$(shell expr \( $(MINUTES) + 3 \) / 4))
 
 campaign: $(STAMP) $(MULTIBODY) $(NODE) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-minutes $(MINUTES) $(SPREAD) $(BESIDES)
-	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) tests/browser
+	$(BIN)/pytest -m "campaign and browser" --campaign-minutes $(BROWSER_MINUTES) $(SPREAD) tests/browser
 
 # Number of corrupted analyses that are posted to a server with a memory limit. A twentieth as many jobs are posted, too.
 # The server must survive all of them.

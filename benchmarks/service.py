@@ -308,7 +308,7 @@ def stated() -> dict[str, dict[str, Any]]:
         slide = mechanism.get("driven_by") == "slider"
         found[name] = {"mechanism": mechanism} | ({} if slide else {"motion": motion})
     for family in list_families()[1:]:
-        body = family.request.model_json_schema()["examples"][0]
+        body = family.request.get_example()
         if "steps" in body.get("motion", {}):
             body = {**body, "motion": {**body["motion"], "from": 0.0, "to": 360.0, "steps": STEPS}}
         found[body["mechanism"]["type"]] = body

@@ -44,8 +44,12 @@ def read_catalogue(folder: Path, language: str) -> dict[str, frozenset[str]]:
 
 def composed() -> Iterator[tuple[str, frozenset[str] | None, str]]:
     """The ids in calls of ``compose`` with the names of their values, None where they are not known, and the place."""
+    beginnings = tuple(f"{folder}-" for folder in find_catalogues())
     for path in [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]:
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        text = path.read_text("utf-8")
+        if not any(beginning in text for beginning in beginnings):
+            continue
+        for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "compose":
                 names = (
                     None

@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("kinematics", "synthesis", "service", "mechsynth")
@@ -55,11 +56,10 @@ DIALECT_PHRASES = re.compile(
 )
 
 
-def trees() -> Iterator[tuple[Path, ast.Module]]:
-    for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            if "migrations" not in path.parts:
-                yield path, ast.parse(path.read_text("utf-8"))
+@pytest.fixture(scope="module")
+def trees() -> list[tuple[Path, ast.Module]]:
+    files = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    return [(path, ast.parse(path.read_text("utf-8"))) for path in files if "migrations" not in path.parts]
 
 
 def words(name: str) -> list[str]:
@@ -75,9 +75,9 @@ def is_property(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     return bool(names & {"property", "cached_property", "computed_field"})
 
 
-def test_functions_are_named_by_what_they_do_or_return() -> None:
+def test_functions_are_named_by_what_they_do_or_return(trees: list[tuple[Path, ast.Module]]) -> None:
     wrong = []
-    for path, tree in trees():
+    for path, tree in trees:
         for node in ast.walk(tree):
             if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) or node.name.startswith("__"):
                 continue
@@ -88,9 +88,9 @@ def test_functions_are_named_by_what_they_do_or_return() -> None:
     assert wrong == []
 
 
-def test_constants_name_a_quantity() -> None:
+def test_constants_name_a_quantity(trees: list[tuple[Path, ast.Module]]) -> None:
     wrong = []
-    for path, tree in trees():
+    for path, tree in trees:
         for node in tree.body:
             targets = node.targets if isinstance(node, ast.Assign) else []
             for name in (part for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)):
@@ -110,9 +110,9 @@ def test_folders_can_be_surveyed() -> None:
     assert crowded == {}
 
 
-def test_prose_is_plain() -> None:
+def test_prose_is_plain(trees: list[tuple[Path, ast.Module]]) -> None:
     lines, hits = 0, []
-    for path, tree in trees():
+    for path, tree in trees:
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
                 lines += node.value.count("\n") + 1

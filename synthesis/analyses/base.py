@@ -5,6 +5,7 @@ A request is a model that finds its own errors and builds its answer.
 
 from __future__ import annotations
 
+import copy
 from abc import ABC, abstractmethod
 from typing import Generic, NamedTuple, Self, TypeVar
 
@@ -42,9 +43,20 @@ class AnalysisRequest(Statement, ABC):
         return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).build_answer()
 
     @classmethod
+    def get_example(cls) -> JsonObject:
+        """Return the example of the API documentation in JSON form; the configuration of the model states it."""
+        schema = cls.model_config["json_schema_extra"]
+        assert isinstance(schema, dict)
+        examples = schema["examples"]
+        assert isinstance(examples, list)
+        example = copy.deepcopy(examples[0])
+        assert isinstance(example, dict)
+        return example
+
+    @classmethod
     def build_example(cls) -> Self:
         """Build the example of the API documentation."""
-        return cls.model_validate(cls.model_json_schema()["examples"][0])
+        return cls.model_validate(cls.get_example())
 
 
 Given = TypeVar("Given", bound=Statement)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import sync_playwright
 
-from tests.support.service.running import ROOT, RunningServer, until
+from tests.support.service.running import LEAN, ROOT, RunningServer, until
 
 CHROMIUM = "/usr/bin/chromium"
 SCREENS = ROOT / "var" / "screens"
@@ -33,7 +33,7 @@ addEventListener("securitypolicyviolation", (event) =>
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     # A page has one job at a time, beside those that the worker for short ones takes.
-    running = RunningServer(tmp_path_factory.mktemp("studio"), workers=1)
+    running = RunningServer(tmp_path_factory.mktemp("studio"), LEAN, workers=1)
     # On a busy machine the analysis core is loaded some time after the server is ready; until then it answers 503,
     # which the page bears, but the browser reports.
     until(lambda: running.client.post("/v1/analyses", json=FOURBAR).status_code == 200, 300, "the analysis core")

@@ -5,14 +5,14 @@ import pytest
 from tests.browser.conftest import Studio
 from tests.support.browser.studio import PLAIN, drawn, state
 from tests.support.service.access import made
-from tests.support.service.running import RunningServer, until
+from tests.support.service.running import LEAN, RunningServer, until
 
 pytestmark = pytest.mark.browser
 
 
 def test_a_key_opens_the_service(chromium, tmp_path):
     key = made(tmp_path, "acme")
-    server = RunningServer(tmp_path, workers=1)
+    server = RunningServer(tmp_path, LEAN, workers=1, reserve=0)
     studio = Studio(chromium, server.url, ready="#key[open]")
     try:
         page = studio.page

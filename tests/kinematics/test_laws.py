@@ -400,7 +400,7 @@ def test_limits_are_where_positions_end() -> None:
 
 
 @given(fourbars())
-@settings(max_examples=200)
+@settings(max_examples=50)
 def test_toggle_angles_lie_in_one_turn_and_are_configurations(linkage: Fourbar) -> None:
     toggles = find_toggle_angles(linkage)
     assert np.all(np.diff(toggles) > 0.0)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from service.server.app import build_api_document
 from synthesis.registry import KINDS, list_examples
-from tests.support.service.running import RunningServer
+from tests.support.service.api_document import read_api_document
+from tests.support.service.running import LEAN, RunningServer
 
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"
@@ -40,7 +40,7 @@ def compiled(tmp_path_factory):
     )
     generator = str(MODULES / ".bin" / "openapi-typescript")
     # What has a default may be left out of a request.
-    (folder / "openapi.json").write_text(build_api_document(), encoding="utf-8")
+    (folder / "openapi.json").write_text(json.dumps(read_api_document()), encoding="utf-8")
     run(folder, generator, "openapi.json", "--default-non-nullable=false", "-o", "api.ts")
     run(folder, str(MODULES / ".bin" / "tsc"), *STRICT, "client.ts", "examples.ts")
     return folder
@@ -51,7 +51,7 @@ def test_every_example_has_the_generated_type(compiled):
 
 
 def test_the_generated_client_solves_a_problem(compiled, tmp_path):
-    server = RunningServer(tmp_path)
+    server = RunningServer(tmp_path, LEAN, workers=1)
     try:
         said = json.loads(run(compiled, "node", "client.js", server.url))
     finally:

@@ -5,13 +5,13 @@ from service.jobs.store.schema import metadata
 from tests.cluster.backend import CHOSEN
 from tests.support import cpu_time
 from tests.support.service.analyses import analyse as analyse  # a fixture
-from tests.support.service.running import SCRIPTED, RunningServer
+from tests.support.service.running import LEAN, SCRIPTED, RunningServer
 
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
-    """The real service, as an operator would run it."""
-    running = RunningServer(tmp_path_factory.mktemp("server"), workers=1, reserve=0)
+    """The real service, as an operator would run it, except that it loads kernels when a job needs them."""
+    running = RunningServer(tmp_path_factory.mktemp("server"), LEAN, workers=1, reserve=0)
     cpu_time.share_server(running.process.pid)
     yield running
     assert running.stop() == 0

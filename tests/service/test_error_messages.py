@@ -126,10 +126,7 @@ def test_a_fault_has_a_message(model, body, type_, detail, german):
 
 STATEMENTS = {
     **{kind: (KINDS[kind].problem, get_first_example(kind)) for kind in KINDS},
-    **{
-        family.request.__name__: (family.request, family.request.model_json_schema()["examples"][0])
-        for family in list_families()
-    },
+    **{family.request.__name__: (family.request, family.request.get_example()) for family in list_families()},
 }
 
 

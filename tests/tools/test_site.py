@@ -11,8 +11,8 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from service.server.app import build_api_document
 from synthesis.registry import KINDS, parse_problem
+from tests.support.service.api_document import read_api_document
 from tools.site import gallery, http_reference
 from tools.site.__main__ import ROOT, main
 from tools.site.docstrings import as_markdown
@@ -179,7 +179,7 @@ def test_a_machine_is_stated_the_same_over_http_in_python_and_as_json(entry: gal
 
 @pytest.mark.slow
 def test_the_reference_has_every_operation_every_model_and_every_field_once() -> None:
-    document = json.loads(build_api_document())
+    document = read_api_document()
     pages = http_reference.http_reference(document)
     whole = "\n".join(pages.values())
     for name, model in document["components"]["schemas"].items():

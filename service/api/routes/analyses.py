@@ -80,8 +80,7 @@ def complete(document: JsonObject) -> None:
     content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
     content["schema"] = REQUEST
     content["examples"] = {
-        model.__name__: {"summary": model.model_config["title"], "value": model.model_json_schema()["examples"][0]}
-        for model in requests
+        model.__name__: {"summary": model.model_config["title"], "value": model.get_example()} for model in requests
     }
 
 

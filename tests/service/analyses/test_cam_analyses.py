@@ -149,7 +149,7 @@ def test_a_profile_that_crosses_itself_is_told() -> None:
 
 
 def test_contour_cams_over_http(client: Any) -> None:
-    example = ContourCamAnalysisRequest.model_json_schema()["examples"][0]
+    example = ContourCamAnalysisRequest.get_example()
     found = answer(client, example)
     ContourCamAnalysis.model_validate(found)
     assert found["base_radius"] == 32.5
@@ -230,8 +230,8 @@ def _many() -> CamAnalysisRequest:
 
 
 def test_faults_of_motions() -> None:
-    cam = CamAnalysisRequest.model_json_schema()["examples"][0]
-    shaft = CamshaftAnalysisRequest.model_json_schema()["examples"][0]
+    cam = CamAnalysisRequest.get_example()
+    shaft = CamshaftAnalysisRequest.get_example()
     train = {"mass": 1.0, "stiffness": 1.0}
     for body, path in (
         ({**cam, "motion": {"speed": 1.0, "speed_rpm": 1.0}}, "/motion/speed_rpm"),
@@ -250,7 +250,7 @@ def test_the_cycle_of_a_given_cam() -> None:
     assert found["follower"]["position"] == pytest.approx(
         cam.program.motion(np.radians(found["input_angle"])).s, abs=1e-6
     )
-    contour = ContourCamAnalysisRequest.model_json_schema()["examples"][0]["mechanism"]
+    contour = ContourCamAnalysisRequest.get_example()["mechanism"]
     assert len(ContourCamAnalysisRequest.analyze_cycle(contour, 12)["input_angle"]) == 13
-    shaft = CamshaftAnalysisRequest.model_json_schema()["examples"][0]["mechanism"]
+    shaft = CamshaftAnalysisRequest.get_example()["mechanism"]
     assert len(CamshaftAnalysisRequest.analyze_cycle(shaft, 12)["input_angle"]) == 13

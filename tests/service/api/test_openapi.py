@@ -5,7 +5,8 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from service.server.app import build_api_document, build_application
+from service.server.app import build_application
+from tests.support.service.api_document import read_api_document
 from tests.support.sixbars.names import WRONG_NAME
 from tools.contract import CONTRACT, contract_lines
 
@@ -14,7 +15,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def document():
-    return json.loads(build_api_document())
+    return read_api_document()
 
 
 def test_the_api_keeps_its_contract(document):

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from service.server.app import build_api_document
 from synthesis.registry import get_first_example
 from tests.support.service.access import client_with, made
-from tests.support.service.running import RunningServer
+from tests.support.service.api_document import read_api_document
+from tests.support.service.running import LEAN, RunningServer
 
 QUICKLY_SOLVED = ("motion", "gear_train", "planetary_train", "cam", "function", "straight_line")
 SOLIDS = ("make_parts", "export_assembly_step", "export_assembly_glb")
@@ -36,7 +36,9 @@ def kept(tmp_path_factory):
     """A service with a key, jobs that end soon whatever is asked, and a finished job of some kinds."""
     folder = tmp_path_factory.mktemp("schemathesis")
     key = made(folder, "acme")
-    server = RunningServer(folder, workers=1, rate_limit="off", job_timeout_s=60, max_wait_s=1, log_level="warning")
+    server = RunningServer(
+        folder, LEAN, workers=1, rate_limit="off", job_timeout_s=60, max_wait_s=1, log_level="warning"
+    )
     server.key = key
     try:
         with client_with(server, key) as client:
@@ -115,7 +117,7 @@ REMOVING = ("--include-method", "DELETE")
 
 @pytest.fixture(scope="module")
 def operations():
-    paths = json.loads(build_api_document())["paths"]
+    paths = read_api_document()["paths"]
     return sum(len(methods) for methods in paths.values())
 
 

@@ -55,7 +55,7 @@ def test_names_of_any_length_are_answered(client):
 @pytest.mark.parametrize("family", list_families(), ids=lambda family: family.request.__name__)
 def test_analyses_suggest_the_fields_of_their_family(family):
     with pytest.raises(Refusal) as refused:
-        analyse({**family.request.model_json_schema()["examples"][0], "mechanizm": {}})
+        analyse({**family.request.get_example(), "mechanizm": {}})
     assert refused.value.status == 422
     assert refused.value.errors == [("/mechanizm", "Unknown field; did you mean `mechanism`?")]
 

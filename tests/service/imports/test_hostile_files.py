@@ -23,7 +23,7 @@ from tests.support.service.hostile_drawings import HOSTILE, everything, mutated
 from tests.support.service.imports import TABLES, blob, found, picture, read
 from tests.support.service.outlines import SHAPES
 from tests.support.service.request_pool import never
-from tests.support.service.running import RunningServer, workers_of
+from tests.support.service.running import LEAN, RunningServer, workers_of
 
 REFUSED = (400, 413, 415, 422)
 SOON_S = 30.0
@@ -242,7 +242,7 @@ def test_changed_files_are_read_or_refused(client):
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
     """A server whose children are known."""
-    running = RunningServer(tmp_path_factory.mktemp("alone"), workers=1)
+    running = RunningServer(tmp_path_factory.mktemp("alone"), LEAN, workers=1, reserve=0)
     running.own = set(running.workers())
     yield running
     assert running.stop() == 0

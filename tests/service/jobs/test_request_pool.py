@@ -140,6 +140,7 @@ def spin(seconds: float) -> float:
     return seconds
 
 
+@pytest.mark.slow
 def test_long_calls_leave_a_process_to_short_ones() -> None:
     """Four tenants post what takes all the time that there is; a fifth one is answered all the same."""
     limits = Limits(wall_s=90.0, cpu_s=1.5, short_s=0.2)
@@ -163,6 +164,7 @@ def test_long_calls_leave_a_process_to_short_ones() -> None:
         pool.stop()
 
 
+@pytest.mark.slow
 def test_processor_time_is_bounded_and_a_long_call_that_waited_is_done() -> None:
     limits = Limits(wall_s=90.0, cpu_s=1.0, short_s=0.1)
     pool = RequestPool("pool", ProcessStart(operator.itemgetter, (0,)), limits, hands=2, max_long=1)

@@ -22,7 +22,7 @@ MANY_MODULES: dict[str, Any] = {
 """Some 10⁷ choices of three stages that share a distance with the fourth; 4·10⁹ whatever their distances."""
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_many_modules_in_four_stages_are_searched(client: httpx.Client) -> None:
     job = finished(client, MANY_MODULES)
     assert job["status"] == "succeeded", job["error"]

@@ -491,7 +491,7 @@ def test_positions_without_a_crank_have_no_stephenson_2(client):
     assert min(one.cost for one in met if 1e-3 < np.abs(one.x).max() < 100.0) > 1e-12
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_body_that_turns_about_one_point_has_many_cranks_and_is_carried(client):
     positions = [{"x": 5.0, "y": 5.0, "angle": 12.0 * k} for k in range(5)]
     designs = passed(answered(client, positions=positions, mechanisms=["stephenson_2"], max_designs=1))

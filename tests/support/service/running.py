@@ -17,6 +17,7 @@ from tests.support import cpu_time
 
 ROOT = Path(__file__).parents[3]
 REAL = ("-m", "service.command.cli")
+LEAN = (str(Path(__file__).with_name("lean_server.py")),)
 SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
 STACKS = signal.SIGUSR1
 """A scripted process writes the stacks of its threads to its log when it gets this signal."""

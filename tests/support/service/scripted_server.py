@@ -216,14 +216,23 @@ def break_lanes():
     ProcessPool.schedule = late_schedule
 
 
-def import_core_only():
-    """Let the processes that analyse import the core and not warm it up: few of these tests analyse anything."""
+def analyse_on_demand():
+    """Start the processes that analyse with the first request, and without a warm-up: few of these tests analyse."""
     from service.answers import desk
 
+    start = desk.AnswerDesk.start
+
+    def start_on_demand(self, after):
+        start(self, lambda: self.is_awaited and after())
+
+    desk.AnswerDesk.start = start_on_demand
     desk.TEMPLATE_MODULE = "tests.support.service.cold_template"
 
 
 if __name__ == "__main__":
+    from tests.support.service.api_document import share_document
+
     break_lanes()
-    import_core_only()
+    analyse_on_demand()
+    share_document()
     sys.exit(main())

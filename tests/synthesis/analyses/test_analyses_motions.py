@@ -29,7 +29,7 @@ def test_nearly_all_families_are_driven():
     ids=["long", "backwards", "two speeds"],
 )
 def test_a_motion_that_cannot_be_meant_is_refused_at_its_field(request_, motion, path):
-    stated = {**request_.model_json_schema()["examples"][0], "motion": motion}
+    stated = {**request_.get_example(), "motion": motion}
     assert path in [place for place, _ in request_.model_validate(stated).find_errors()]
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from numba import njit
 
+from kinematics.compiling import njit
 from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, append_limit_rows, descend_constrained
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.levenberg import ROWS, descend
@@ -12,7 +12,7 @@ from synthesis.numerics.status import Status
 TOLERANCE = 1e-14
 
 
-@njit(ROWS)
+@njit(ROWS, cache=True)
 def valley(x, points, setting, multipliers, state, residuals, jacobian):
     """Rosenbrock's residuals and a third, setting[0], that no unknown moves; impossible for x₀ > 100.
 

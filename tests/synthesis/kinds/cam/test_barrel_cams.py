@@ -158,7 +158,7 @@ def test_the_analysis_drives_the_finished_groove():
     assert np.abs(np.array(answer["follower"]["position"]) - found).max() < 1e-3
     assert np.abs(answer["play"]).max() < 1e-6
     assert max(answer["pressure_angle"]) == pytest.approx(35.0, rel=1e-4)
-    example = BarrelCamAnalysisRequest.model_json_schema()["examples"][0]
+    example = BarrelCamAnalysisRequest.get_example()
     assert np.abs(parse_request(example).build_answer()["play"]).max() < 1e-3
 
 

@@ -31,7 +31,18 @@ def stated(**fields) -> DwellProblem:
     return problem
 
 
+_results: dict[str, DwellResult] = {}
+"""Answers by their problems; answers are frozen models."""
+
+
 def solved(problem: DwellProblem) -> DwellResult:
+    key = problem.model_dump_json()
+    if key not in _results:
+        _results[key] = solved_again(problem)
+    return _results[key]
+
+
+def solved_again(problem: DwellProblem) -> DwellResult:
     told: list[float] = []
     result = solve(problem, lambda fraction, message: told.append(fraction))
     assert told == sorted(told)
@@ -50,13 +61,14 @@ TASKS = [
     {"output": slider(0.02), "count": 2, "dwell_angle": 50.0, "length_unit": "m"},
     {"mechanism": "stephenson_2", "dwell_angle": 100.0, "output": rocker(40.0)},
     {"mechanism": "stephenson_2", "output": rocker(60.0), "count": 2, "dwell_angle": 50.0},
+    {"mechanism": "stephenson_2", "output": rocker(50.0), "constraints": {"max_link_ratio": 7.0}},
 ]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "fields",
-    further(TASKS, [*TASKS[:3], TASKS[6]]),
+    further(TASKS, [*TASKS[:3], TASKS[-1]]),
     ids=lambda fields: f"{fields.get('mechanism', 'slider')}-{fields.get('count', 1)}",
 )
 def test_dwells_are_what_was_measured(fields) -> None:
@@ -151,7 +163,7 @@ def test_size_does_not_matter(size: float) -> None:
 
 @pytest.mark.campaign
 def test_the_same_problem_has_the_same_answer() -> None:
-    one, other = (solved(stated(mechanism="straight_slot")).model_dump() for _ in range(2))
+    one, other = (solved_again(stated(mechanism="straight_slot")).model_dump() for _ in range(2))
     assert one == other
     assert solved(stated(mechanism="straight_slot", seed=1)).model_dump() != one
 

@@ -1,0 +1,24 @@
+"""The real service, except that a worker loads the kernels of a kind with its first job of that kind, not at its start,
+and that all servers of a test session share one OpenAPI document.
+
+Loading all kernels takes ten seconds of CPU time, and the tests of a session ask for a part of them. Run like
+``mechsynth``.
+"""
+
+import sys
+
+from service.command.cli import main
+from service.jobs.processes.limits import use_one_thread
+
+# Worker processes import the main module of the server again, under this name.
+if __name__ == "__mp_main__":
+    use_one_thread()  # before numpy is imported
+    from synthesis import dispatch
+
+    dispatch.warm_up_rest = lambda: None
+
+if __name__ == "__main__":
+    from tests.support.service.api_document import share_document
+
+    share_document()
+    sys.exit(main())
