@@ -78,7 +78,11 @@ MADE: dict[Key, Row] = {
     ),
     ("path", "watt_1"): _sixbar(FITTED_PATH, "watt_1"),
     ("path", "stephenson_1"): _sixbar(FITTED_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
-    ("path", "stephenson_2"): _sixbar(FITTED_PATH, "stephenson_2"),
+    # Links 3 and 5 often pass over the input shaft on both sides, where no planes separate them: constrain the planes.
+    ("path", "stephenson_2"): _sixbar(
+        {**FITTED_PATH, "layout": {"link_width": 2.0, "pin_diameter": 1.0, "thickness": 1.0, "max_planes": 8}},
+        "stephenson_2",
+    ),
     ("path", "stephenson_3"): _sixbar(FITTED_PATH, "stephenson_3"),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
