@@ -32,8 +32,8 @@ from service.jobs.store.schema import (
 )
 from service.jobs.store.statements import (
     COLUMNS,
-    COUNT_QUEUED,
     INSERT_JOB,
+    INSERT_JOB_UNLESS_FULL,
     IS_SINGLE_JOB,
     JOB_COLUMNS,
     MAX_CRASHES,
@@ -45,6 +45,7 @@ from service.jobs.store.statements import (
     SELECT_CLAIMED,
     SELECT_NEXT,
     SELECT_NEXT_OF_OTHERS,
+    SELECT_QUEUE_BOUNDS,
     SUMMARY_COLUMNS,
     UPDATE_CLAIMED,
     UPDATE_FAILED,
@@ -327,14 +328,18 @@ def _is_stored(connection: Connection, job_id: str) -> bool:
 def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
     most = _NO_LIMIT if max_queued is None else max_queued
-    limits = {"of": row["tenant"], "most": most}
+    of, values = row["tenant"], {**row, "of": row["tenant"], "as": row["cost"]}
     # SQLite has one writer at a time, so its inserts need no further order.
-    postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, limits).scalar_one() > min(
-        _SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS
-    ):
-        serialize_inserts(connection, row["tenant"])
-    return connection.execute(INSERT_JOB, {**row, **limits, "as": row["cost"]}).rowcount > 0
+    if connection.dialect.name == "postgresql":
+        few = max(0, min(_SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS))
+        queued, turns = connection.execute(SELECT_QUEUE_BOUNDS, {"of": of, "most": few + 1}).one()
+        if queued > few or most < _MAX_CONCURRENT_INSERTS:
+            serialize_inserts(connection, of)
+        # Counting reads each of the tenant's queued rows, so it is left to the queues that may be full.
+        if turns + _MAX_CONCURRENT_INSERTS < most:
+            connection.execute(INSERT_JOB, values)
+            return True
+    return connection.execute(INSERT_JOB_UNLESS_FULL, {**values, "most": most}).rowcount > 0
 
 
 def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Case, ColumnElement, Integer, Update, bindparam, case, func, insert, select, update
+from sqlalchemy import Case, ColumnElement, Integer, Update, bindparam, case, func, insert, literal, select, update
 from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
@@ -145,15 +145,32 @@ _queued = (
     select(jobs.c.id).where(QUEUED_CONDITION, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
 )
 COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
-# The inserting statement itself counts, so that concurrent inserts cannot all take the last place.
-INSERT_JOB = (
+
+
+def _count_turns(cost: Cost, *, share: bool = False) -> ColumnElement[int]:
+    """Build the number of turns from a tenant's first queued job to its last one, which takes two look-ups."""
+    alike = jobs.c.batch.is_not(None) if share else IS_SINGLE_JOB
+    turns = select(func.coalesce(func.max(jobs.c.turn) - func.min(jobs.c.turn) + 1, 0))
+    return turns.where(QUEUED_CONDITION, jobs.c.tenant == bindparam("of"), jobs.c.cost == cost, alike).scalar_subquery()
+
+
+# The first number is exact up to the limit given; the second is at least the number of queued jobs that do not share a
+# turn. A job that has been requeued has turn 0, which makes the second number large, never too small.
+SELECT_QUEUE_BOUNDS = select(
+    COUNT_QUEUED.scalar_subquery(),
+    sum((_count_turns(cost, share=share) for cost in Cost for share in (False, True)), start=literal(0)),
+)
+_NEW_JOB = select(
+    *(bindparam(name, type_=jobs.c[name].type) for name in _STORED_COLUMNS),
+    build_turn(bindparam("of"), bindparam("as")),
+)
+INSERT_JOB = insert(jobs).from_select([*_STORED_COLUMNS, "turn"], _NEW_JOB)
+# This statement itself counts, so that concurrent inserts cannot all take the last place.
+INSERT_JOB_UNLESS_FULL = (
     insert(jobs)
     .from_select(
         [*_STORED_COLUMNS, "turn"],
-        select(
-            *(bindparam(name, type_=jobs.c[name].type) for name in _STORED_COLUMNS),
-            build_turn(bindparam("of"), bindparam("as")),
-        ).where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
+        _NEW_JOB.where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
     )
     .execution_options(preserve_rowcount=True)
 )
