@@ -35,6 +35,12 @@ def test_the_migrations_make_the_tables_of_the_schema(engine):
         assert compare_metadata(MigrationContext.configure(connection), metadata) == []
 
 
+def test_nothing_notifies_inside_the_transactions_of_jobs(engine):
+    upgrade(engine)
+    with engine.connect() as connection:
+        assert connection.execute(text("SELECT tgname FROM pg_trigger WHERE NOT tgisinternal")).all() == []
+
+
 def test_a_downgrade_leaves_nothing_behind(engine):
     upgrade(engine)
     config = Config()

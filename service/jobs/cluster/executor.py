@@ -1,13 +1,14 @@
 """The executor for several machines: worker hosts (``mechsynth worker``) claim the jobs in the shared database.
 
-This side receives notifications of changed jobs and recovers abandoned ones; :mod:`service.jobs.cluster.worker_host` is
-the other side.
+This side announces queued jobs, hears of changed ones and recovers abandoned ones. The other side is
+:mod:`service.jobs.cluster.worker_host`.
 """
 
 from __future__ import annotations
 
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import CHANGES_CHANNEL, StoreListener
+from service.jobs.cluster.listener import StoreListener
+from service.jobs.cluster.notifier import CHANGES_CHANNEL, StoreNotifier, split_ids
 from service.jobs.cluster.recovery import Recovery
 from service.jobs.executor import Changed
 from service.jobs.job_store import JobStore
@@ -32,6 +33,7 @@ class ClusterExecutor:
         JobStore(self._engine).ping()
         self._leases = LeaseStore(self._engine)
         self._recovery = Recovery(self._leases, self._count_workers)
+        self._notifier = StoreNotifier(settings.store_url)
         self._listener: StoreListener | None = None
         self._workers = 0
 
@@ -39,29 +41,37 @@ class ClusterExecutor:
         """Do nothing: worker hosts are started on their own."""
 
     def resume(self) -> None:
-        """Start to recover the jobs of all servers and to listen for changes."""
+        """Start to recover the jobs of all servers, to announce queued jobs and to listen for changes."""
         self._count_workers()
         self._recovery.start()
+        self._notifier.start()
         if self._listener is not None:
             self._listener.start()
 
     def subscribe(self, changed: Changed) -> None:
-        """Call ``changed`` with the id of each job whose state changes from now on."""
-        self._listener = StoreListener(self._settings.store_url, CHANGES_CHANNEL, changed)
+        """Call ``changed`` with the id of each job that a host releases or another server cancels."""
+
+        def hear(payload: str | None) -> None:
+            for job_id in split_ids(payload):
+                changed(job_id)
+
+        self._listener = StoreListener(self._settings.store_url, CHANGES_CHANNEL, hear)
 
     def submit(self, job_id: str) -> None:
-        """Do nothing: the database has notified the worker hosts of the queued job."""
+        """Wake a free worker of each host."""
+        self._notifier.announce_work()
 
     def cancel(self, job_id: str) -> None:
-        """Do nothing: the host that runs the job notices within half a second that its claim is no longer valid."""
+        """Announce the end of the job; the host that runs it notices within half a second that its claim is invalid."""
+        self._notifier.announce_change(job_id)
 
     def count_ready_workers(self) -> int:
         """Return the number of workers on all hosts, at most a second old."""
         return self._workers
 
     def stop(self) -> None:
-        """Stop to recover and to listen; worker hosts continue."""
-        threads: list[Recovery | StoreListener] = [self._recovery]
+        """Stop all threads; worker hosts continue."""
+        threads: list[Recovery | StoreNotifier | StoreListener] = [self._recovery, self._notifier]
         if self._listener is not None:
             threads.append(self._listener)
         for thread in threads:

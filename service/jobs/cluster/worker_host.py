@@ -19,7 +19,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import WORK_CHANNEL, StoreListener
+from service.jobs.cluster.listener import StoreListener
+from service.jobs.cluster.notifier import WORK_CHANNEL, StoreNotifier, read_count
 from service.jobs.cluster.recovery import Recovery
 from service.jobs.store.database import LaterTables, connect, is_unreachable, upgrade
 from service.jobs.workers.local_executor import LocalExecutor
@@ -30,6 +31,9 @@ from service.settings import Settings
 
 BEAT_PERIOD_S = 0.5
 """Period at which a host renews its leases and checks for cancelled jobs, seconds; these must stop within 2 s."""
+
+STOP_TIMEOUT_S = 2.0
+"""Time limit for the last notifications of a host that stops, seconds."""
 
 log = structlog.get_logger(__name__)
 
@@ -49,18 +53,23 @@ class Host:
         self._leases = LeaseStore(self._engine)
         self._recovery = Recovery(self._leases)
         self._beating = threading.Thread(target=self._run_heartbeat, name="beat", daemon=True)
-        self._listener = StoreListener(settings.store_url, WORK_CHANNEL, lambda _: self.lanes.wake())
+        self._notifier = StoreNotifier(settings.store_url)
+        self._listener = StoreListener(
+            settings.store_url, WORK_CHANNEL, lambda payload: self.lanes.wake(read_count(payload))
+        )
         self._stopping = threading.Event()
         metrics.watch(self.lanes.count_ready_workers, lambda: len(self.lanes.list_claims()))
 
     def start(self) -> None:
         """Create missing tables and start the lanes."""
         upgrade(self._engine)
+        self.lanes.subscribe(self._notifier.announce_change)
         self.lanes.start()
         self.lanes.open()
         self._compilation.start(after=lambda: self.lanes.count_ready_workers() > 0)
         self._beating.start()
         self._recovery.start()
+        self._notifier.start()
         self._listener.start()
 
     def stop(self) -> None:
@@ -69,11 +78,17 @@ class Host:
         self._compilation.stop()
         self._recovery.stop()
         self._listener.stop()
+        running = len(self.lanes.list_claims())
         self.lanes.stop()
+        for _ in range(running):  # they are queued again
+            self._notifier.announce_work()
+        self._notifier.stop()
         try:
             self._leases.remove_host(self.id)
         except SQLAlchemyError as error:  # the host's last sign of life then expires by itself
             log.warning("the store does not answer", error=type(error).__name__)
+        if self._notifier.is_alive():
+            self._notifier.join(STOP_TIMEOUT_S)
 
     def _run_heartbeat(self) -> None:
         while not self._stopping.wait(BEAT_PERIOD_S):

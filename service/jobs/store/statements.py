@@ -10,7 +10,21 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Case, ColumnElement, Integer, Update, bindparam, case, func, insert, literal, select, update
+from sqlalchemy import (
+    Case,
+    ColumnElement,
+    Integer,
+    ScalarSelect,
+    Select,
+    Update,
+    bindparam,
+    case,
+    func,
+    insert,
+    literal,
+    select,
+    update,
+)
 from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
@@ -44,7 +58,7 @@ IS_SINGLE_JOB = jobs.c.batch.is_(None)
 """Condition for jobs posted by clients, as opposed to shares of batches."""
 
 
-def build_move(name: str, job_id: str | ColumnElement[str], **values: object) -> Update:
+def build_move(name: str, job_id: str | ColumnElement[str] | ScalarSelect[str], **values: object) -> Update:
     """Build the update that makes the named move with a job in a source state; ``values`` are stored with it."""
     move = MOVES[name]
     return (
@@ -177,26 +191,30 @@ INSERT_JOB_UNLESS_FULL = (
 # Skips jobs that another host is about to claim; with SQLite only one process claims jobs.
 SELECT_NEXT = (
     select(jobs.c.id)
-    .where(QUEUED_CONDITION, jobs.c.cost == bindparam("cost"))
+    .where(QUEUED_CONDITION, jobs.c.cost == bindparam("as"))
     .order_by(jobs.c.turn, jobs.c.id)
     .limit(1)
     .with_for_update(skip_locked=True)
 )
 SELECT_NEXT_OF_OTHERS = SELECT_NEXT.where(jobs.c.tenant.not_in(bindparam("passed_over", expanding=True)))
-UPDATE_CLAIMED = (
-    update(jobs)
-    .where(jobs.c.id == bindparam("job"), jobs.c.status.in_(MOVES["claim"].sources))
-    .values(
-        status=MOVES["claim"].target,
-        revision=jobs.c.revision + 1,
+
+
+def build_claim(following: Select[tuple[str]]) -> ReturningUpdate[Any]:
+    """Build the update that claims the job that a query finds, in one statement and so in one trip."""
+    return build_move(
+        "claim",
+        # Found before the update and once: PostgreSQL might repeat a subquery, and lock another job each time.
+        select(following.cte("following").c.id).scalar_subquery(),
         progress_message="running",
         started_at=bindparam("moment"),
         attempt=jobs.c.attempt + 1,
         claim=bindparam("mark"),
         due_at=StoreClock() + LEASE_S,
-    )
-    .returning(*CLAIM_COLUMNS)
-)
+    ).returning(*CLAIM_COLUMNS)
+
+
+CLAIM_NEXT = build_claim(SELECT_NEXT)
+CLAIM_NEXT_OF_OTHERS = build_claim(SELECT_NEXT_OF_OTHERS)
 SELECT_CLAIMED = select(*CLAIM_COLUMNS).where(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark"))
 _IS_ATTEMPT = jobs.c.attempt == bindparam("of")
 UPDATE_SUCCEEDED = build_move(
