@@ -1,11 +1,11 @@
-"""Notifications of PostgreSQL (``NOTIFY``), sent after the commit of what they announce and in bundles.
+"""Notifications of PostgreSQL (``NOTIFY``), sent in bundles after the commits that they announce.
 
 PostgreSQL holds one lock of the whole cluster while a transaction with a notification commits and is flushed to disk.
 A notification inside the transactions of jobs would therefore make all of them wait for one another. A notification by
 itself has nothing to flush.
 
 A process may die between a commit and its notification, and a notification may be lost with a connection. Nothing
-relies on one: whoever waits for a change also reads the store, at least once a second.
+relies on one: all that wait for a change also read the store, at least once a second.
 """
 
 from __future__ import annotations
