@@ -3,7 +3,7 @@
 # make quick   run the tests that take less than a second of CPU time each: all of them, or those in TESTS=...
 # make test    run ruff, mypy, import-linter and the whole pytest suite except the tests that have a target of their own
 # make test-faults  kill processes and report the outcome of their jobs, with figures
-# make test-cluster  test the service on PostgreSQL, RabbitMQ and Redis (installed if missing, when run as root)
+# make test-cluster  test the service on PostgreSQL with worker hosts (installed if missing, when run as root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed if missing, when run as root)
 # make test-cad  run the tests of solids, in a separate environment with the extra cad (.venv-cad, a gigabyte)
@@ -43,7 +43,7 @@ BESIDES := $(addprefix --ignore tests/,browser cad cluster faults node)
 export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: marks vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi types lock package docs \
-    test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
+    test-docs clean suite test-cad cad-suite
 
 serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
 	@exec $(BIN)/mechsynth serve
@@ -61,27 +61,19 @@ suite: $(STAMP)
 marks: $(STAMP)
 	$(BIN)/pytest -m "$(APART)" --check-marks $(SPREAD) $(BESIDES)
 
-# Tests of the service on PostgreSQL and Celery, with real servers on free ports. Each file runs with one of the two
-# brokers; tests of behaviour that depends on the broker (deployments, restarts, faults) run with both.
-BY_BROKER := tests/cluster/test_deployment.py tests/cluster/test_restarts.py tests/service/jobs/test_faults.py
-ON_RABBITMQ := $(addprefix tests/service/jobs/test_,jobs_api.py turns.py store.py upgrade.py) \
-    tests/service/api/test_idempotency.py tests/cluster/test_schema.py
-ON_REDIS := $(addprefix tests/service/jobs/test_,batches.py batch_store.py events.py) \
-    $(addprefix tests/service/api/test_,limits.py access.py)
+# Tests of the service on PostgreSQL with worker hosts: real servers on free ports.
+ON_POSTGRESQL := tests/cluster tests/service/api/test_access.py tests/service/api/test_idempotency.py \
+    tests/service/api/test_limits.py $(addprefix tests/service/jobs/test_,batch_store.py batches.py events.py faults.py \
+    jobs_api.py store.py turns.py upgrade.py)
 
 test-cluster: $(STAMP) engines
-	@$(MAKE) --no-print-directory -j2 --output-sync=target cluster-rabbitmq cluster-redis
-
-cluster-rabbitmq: OF_ONE_BROKER := $(ON_RABBITMQ)
-cluster-redis: OF_ONE_BROKER := $(ON_REDIS)
-cluster-rabbitmq cluster-redis: cluster-%:
-	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(BY_BROKER) $(OF_ONE_BROKER)
+	$(BIN)/pytest -m "not embedded" -q --backend postgresql $(SPREAD) $(ON_POSTGRESQL)
 
 engines:
-	@{ ls /usr/lib/postgresql/*/bin/postgres && test -x /usr/sbin/rabbitmq-server && test -x /usr/bin/redis-server; } \
-	    > /dev/null 2>&1 || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null && apt-get update -q \
-	    && apt-get install -qy --no-install-recommends postgresql rabbitmq-server redis-server; } \
-	    || { echo "the cluster tests need Debian's postgresql, rabbitmq-server and redis-server"; exit 1; }
+	@ls /usr/lib/postgresql/*/bin/postgres > /dev/null 2>&1 \
+	    || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null && apt-get update -q \
+	    && apt-get install -qy --no-install-recommends postgresql; } \
+	    || { echo "the cluster tests need Debian's postgresql: apt-get install postgresql"; exit 1; }
 
 # Tests that measure wall-clock time run alone, after all others.
 TIMED := tests/browser/test_smoothness.py
@@ -129,8 +121,8 @@ fuzz: $(STAMP)
 # hour with a single server, and as long again with a cluster.
 test-faults: $(STAMP) engines
 	$(BIN)/pytest -m "faults and not cluster" -n 2 -rP -q tests/faults
-	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgres+rabbitmq tests/faults
-	MECHSYNTH_RESTARTS=10,5 $(BIN)/pytest -s -q --backend postgres+rabbitmq tests/cluster/test_restarts.py
+	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgresql tests/faults
+	MECHSYNTH_RESTARTS=10 $(BIN)/pytest -s -q --backend postgresql tests/cluster/test_restarts.py
 
 check: $(STAMP)
 	$(BIN)/ruff check .

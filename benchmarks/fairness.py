@@ -1,6 +1,6 @@
 """How long a short job takes beside the work of others: long jobs, another tenant's flood, clients that cancel.
 
-    python -m benchmarks.fairness [--jobs 100] [--backend sqlite+local]
+    python -m benchmarks.fairness [--jobs 100] [--backend sqlite]
 
 A real server with two workers and one in reserve is started on a free loopback port, with the keys of two tenants. One
 posts short jobs, one after the other with a pause, and waits for each; the time runs from the request to the last byte
@@ -9,7 +9,7 @@ run; fill its queue with short jobs and post more over four connections, all the
 that cancel them as soon as they run. No job of the first tenant may be refused. Each part ends after
 :data:`MAX_PART_S` at the latest, with the jobs that it has had.
 
-The other backends are started from their Debian packages, on free loopback ports too.
+PostgreSQL is started from its Debian package, on a free loopback port too.
 """
 
 from __future__ import annotations

@@ -6,12 +6,13 @@ import os
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, SecretStr, ValidationError, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 ENV_PREFIX = "MECHSYNTH_"
 
-BROKER_SCHEMES = ("amqp://", "amqps://", "redis://", "rediss://")
+REMOVED_SETTINGS = ("BROKER_URL", "QUEUE")
+"""Settings of the broker that earlier versions had between servers and worker hosts."""
 
 
 class SettingsError(ValueError):
@@ -33,14 +34,8 @@ class Settings(BaseSettings):
     database_url: str | None = Field(
         default=None, description="SQLAlchemy URL of the job store; by default a SQLite file in data_dir."
     )
-    executor: Literal["local", "celery"] = Field(
-        default="local", description="Executor of jobs: workers of the server, or worker hosts behind a broker."
-    )
-    broker_url: SecretStr | None = Field(
-        default=None, description="Broker between servers and worker hosts: amqp://... (RabbitMQ) or redis://..."
-    )
-    queue: Annotated[str, Field(pattern="^[A-Za-z0-9._-]{1,100}$", description="Name of the queue in the broker.")] = (
-        "mechsynth"
+    executor: Literal["local", "cluster"] = Field(
+        default="local", description="Executor of jobs: workers of the server, or worker hosts that share its database."
     )
     workers: Annotated[int, Field(ge=1, le=256, description="Worker processes.")] = min(2, os.cpu_count() or 1)
     reserve: Annotated[int, Field(ge=0, le=256, description="Number of further workers, reserved for short jobs.")] = 1
@@ -82,20 +77,17 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     log_format: Literal["text", "json"] = "text"
 
-    @field_validator("broker_url")
+    @field_validator("executor", mode="before")
     @classmethod
-    def _check_broker(cls, url: SecretStr | None) -> SecretStr | None:
-        if url is not None and not url.get_secret_value().startswith(BROKER_SCHEMES):
-            raise ValueError(f"a broker's URL begins with {', '.join(BROKER_SCHEMES)}")
-        return url
+    def _check_executor(cls, executor: object) -> object:
+        if executor == "celery":
+            raise ValueError("celery was replaced by cluster: servers and worker hosts share PostgreSQL only")
+        return executor
 
     @model_validator(mode="after")
-    def _check_distributed(self) -> Self:
-        if self.executor == "celery":
-            if self.broker_url is None:
-                raise ValueError(f"{ENV_PREFIX}EXECUTOR=celery needs a broker; set {ENV_PREFIX}BROKER_URL")
-            if not self.store_url.startswith("postgres"):
-                raise ValueError(f"{ENV_PREFIX}EXECUTOR=celery needs PostgreSQL; set {ENV_PREFIX}DATABASE_URL")
+    def _check_cluster(self) -> Self:
+        if self.executor == "cluster" and not self.store_url.startswith("postgres"):
+            raise ValueError(f"{ENV_PREFIX}EXECUTOR=cluster needs PostgreSQL; set {ENV_PREFIX}DATABASE_URL")
         return self
 
     @property
@@ -115,8 +107,13 @@ def read_settings() -> Settings:
     Raises
     ------
     SettingsError
-        If a variable has an invalid value.
+        If a variable has an invalid value, or belongs to a setting that was removed.
     """
+    for name in REMOVED_SETTINGS:
+        if os.environ.get(ENV_PREFIX + name):
+            raise SettingsError(
+                f"{ENV_PREFIX}{name}: there is no broker any more, worker hosts take the jobs from PostgreSQL; unset it"
+            )
     try:
         return Settings()
     except ValidationError as error:

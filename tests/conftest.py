@@ -1,4 +1,4 @@
-"""Settings that all tests share, the size of campaigns, and the engines that the service runs on while they run."""
+"""Settings that all tests share, the size of campaigns, and the database that the service runs on."""
 
 import gc
 from collections import Counter
@@ -25,7 +25,7 @@ def pytest_addoption(parser):
         "--backend",
         choices=backend.NAMES,
         default=backend.NAMES[0],
-        help="what the service runs on: SQLite and workers of its own, or PostgreSQL, Celery and a broker",
+        help="what the service runs on: SQLite and workers of its own, or PostgreSQL and worker hosts",
     )
     parser.addoption(
         "--campaign-minutes",
@@ -97,7 +97,7 @@ def pytest_runtest_teardown(item):
 
 
 @pytest.fixture(scope="session", autouse=True)
-def engines():
-    """Ends whatever engines the tests have started."""
+def postgres():
+    """Ends PostgreSQL if the tests have started it."""
     yield
     backend.CHOSEN.remove()

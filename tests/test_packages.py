@@ -19,7 +19,7 @@ PIN = re.compile(
 LOCK = (ROOT / "requirements.lock").read_text("utf-8")
 PINS = set(PIN.findall(LOCK))
 FOR_DEVELOPERS = {"pytest", "mypy", "ruff", "hypothesis", "playwright", "schemathesis", "import-linter", "uv"}
-FOR_CLUSTERS = {"celery", "psycopg", "redis", "opentelemetry-sdk"}
+FOR_CLUSTERS = {"psycopg", "opentelemetry-sdk"}
 
 USERS = SETTINGS["project"]["dependencies"]
 EXTRAS = SETTINGS["project"]["optional-dependencies"]

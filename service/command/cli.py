@@ -144,8 +144,11 @@ def _run_worker() -> int:
     settings = _load_settings()
     if settings is None:
         return EXIT_USAGE
-    if settings.executor != "celery":
-        print("mechsynth worker: a worker host needs a broker; set MECHSYNTH_EXECUTOR=celery", file=sys.stderr)
+    if settings.executor != "cluster":
+        print(
+            "mechsynth worker: a worker host shares the database of servers; set MECHSYNTH_EXECUTOR=cluster",
+            file=sys.stderr,
+        )
         return EXIT_USAGE
     from sqlalchemy.exc import SQLAlchemyError
 
@@ -169,7 +172,7 @@ def _build_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
     commands = parser.add_subparsers(dest="name", required=True, metavar="command")
     commands.add_parser("serve", help="run the service, configured by environment variables MECHSYNTH_...")
-    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; configured like the service")
+    commands.add_parser("worker", help="run a worker host, which takes the jobs of servers from their database")
     demo = commands.add_parser("demo", help="start a service, solve an example problem and draw the answer")
     demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="file for the drawing (SVG)")
     solve = commands.add_parser("solve", help="solve the problem in a file, print the answer and write the drawings")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
 import structlog
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 
 from kinematics.message import compose
@@ -14,11 +16,15 @@ from service.jobs.events.notifier import ChangeNotifier
 from service.jobs.executor import Executor
 from service.jobs.job_store import JobStore
 from service.jobs.store.admission import Repeatable
+from service.jobs.store.database import is_unreachable
 from service.jobs.store.finished_cache import FinishedJobs
 from service.jobs.store.schema import JobRow, JobSummary, SampleRow
 from service.jobs.store.states import Cost, Status
 from service.observability.metrics import Metrics
 from service.observability.telemetry import measure_span
+
+POLL_PERIOD_S = 1.0
+"""Period at which a waiting request reads its job, seconds: the notification of a change may be lost."""
 
 log = structlog.get_logger(__name__)
 
@@ -101,12 +107,22 @@ class JobDesk:
         try:
             async with asyncio.timeout(wait_s):
                 while not job.status.finished and not self.notifier.closed:
-                    await changed.wait()
+                    with suppress(TimeoutError):
+                        async with asyncio.timeout(POLL_PERIOD_S):
+                            await changed.wait()
                     changed.clear()
-                    job = await self.get(job.tenant, job.id) or job
+                    job = await self._read_if_reachable(job)
         except TimeoutError:
             return await self.get(job.tenant, job.id) or job
         return job
+
+    async def _read_if_reachable(self, job: JobRow) -> JobRow:
+        try:
+            return await self.get(job.tenant, job.id) or job
+        except SQLAlchemyError as error:  # the job is accepted; the store may be back before the wait is over
+            if not is_unreachable(error):
+                raise
+            return job
 
     async def get(self, tenant: str, job_id: str) -> JobRow | None:
         """Return the job; None if it does not exist or belongs to another tenant."""

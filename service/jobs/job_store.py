@@ -31,9 +31,11 @@ from service.jobs.store.schema import (
     jobs,
 )
 from service.jobs.store.statements import (
+    CLAIM_NEXT,
+    CLAIM_NEXT_OF_OTHERS,
     COLUMNS,
-    COUNT_QUEUED,
     INSERT_JOB,
+    INSERT_JOB_UNLESS_FULL,
     IS_SINGLE_JOB,
     JOB_COLUMNS,
     MAX_CRASHES,
@@ -45,8 +47,8 @@ from service.jobs.store.statements import (
     SELECT_CLAIMED,
     SELECT_NEXT,
     SELECT_NEXT_OF_OTHERS,
+    SELECT_QUEUE_BOUNDS,
     SUMMARY_COLUMNS,
-    UPDATE_CLAIMED,
     UPDATE_FAILED,
     UPDATE_SUCCEEDED,
     build_death_update,
@@ -202,12 +204,9 @@ class JobStore:
         """
         with self._engine.begin() as connection:
             for cost in costs:
-                while (job_id := _find_next(connection, cost, passed_over if cost == Cost.SHORT else ())) is not None:
-                    row = connection.execute(
-                        UPDATE_CLAIMED, {"job": job_id, "mark": mark, "moment": format_now()}
-                    ).one_or_none()
-                    if row is not None:  # else it was cancelled since the query
-                        return _claim(row)
+                row = _claim_next(connection, cost, mark, passed_over if cost == Cost.SHORT else ())
+                if row is not None:
+                    return _claim(row)
         return None
 
     def find_claim(self, mark: str) -> Claim | None:
@@ -327,21 +326,30 @@ def _is_stored(connection: Connection, job_id: str) -> bool:
 def _insert_unless_full(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs of its tenant are already queued; return whether it was inserted."""
     most = _NO_LIMIT if max_queued is None else max_queued
-    limits = {"of": row["tenant"], "most": most}
+    of, values = row["tenant"], {**row, "of": row["tenant"], "as": row["cost"]}
     # SQLite has one writer at a time, so its inserts need no further order.
-    postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, limits).scalar_one() > min(
-        _SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS
-    ):
-        serialize_inserts(connection, row["tenant"])
-    return connection.execute(INSERT_JOB, {**row, **limits, "as": row["cost"]}).rowcount > 0
+    if connection.dialect.name == "postgresql":
+        few = max(0, min(_SERIAL_THRESHOLD, most - _MAX_CONCURRENT_INSERTS))
+        queued, turns = connection.execute(SELECT_QUEUE_BOUNDS, {"of": of, "most": few + 1}).one()
+        if queued > few or most < _MAX_CONCURRENT_INSERTS:
+            serialize_inserts(connection, of)
+        # Counting reads each of the tenant's queued rows, so it is left to the queues that may be full.
+        if turns + _MAX_CONCURRENT_INSERTS < most:
+            connection.execute(INSERT_JOB, values)
+            return True
+    return connection.execute(INSERT_JOB_UNLESS_FULL, {**values, "most": most}).rowcount > 0
 
 
-def _find_next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
-    """Return the id of the next queued job of this cost, skipping the tenants ``passed_over``."""
-    if not passed_over:
-        return connection.execute(SELECT_NEXT, {"cost": cost}).scalar_one_or_none()
-    return connection.execute(SELECT_NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()
+def _claim_next(connection: Connection, cost: Cost, mark: str, passed_over: Collection[str]) -> AnyRow | None:
+    """Claim the next queued job of this cost, skipping the tenants ``passed_over``."""
+    of = {"as": cost, **({"passed_over": [*passed_over]} if passed_over else {})}
+    # Every write to SQLite waits for its one lock, also one that would find no job.
+    if connection.dialect.name == "sqlite":
+        query = SELECT_NEXT_OF_OTHERS if passed_over else SELECT_NEXT
+        if connection.execute(query, of).first() is None:
+            return None
+    change = CLAIM_NEXT_OF_OTHERS if passed_over else CLAIM_NEXT
+    return connection.execute(change, {**of, "mark": mark, "moment": format_now()}).one_or_none()
 
 
 def _claim(row: AnyRow) -> Claim:

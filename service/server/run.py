@@ -74,11 +74,11 @@ def _raise_stop(_signal: int, _frame: FrameType | None) -> None:
 
 def _create_executor(settings: Settings, metrics: Metrics) -> Executor:
     try:
-        if settings.executor == "celery":
-            # The import of Celery takes half a second, which a server with local workers does not need.
-            from service.jobs.cluster.executor import CeleryExecutor
+        if settings.executor == "cluster":
+            # It imports the driver of PostgreSQL, which only the extra `cluster` installs.
+            from service.jobs.cluster.executor import ClusterExecutor
 
-            return CeleryExecutor(settings)
+            return ClusterExecutor(settings)
         return LocalExecutor(settings, metrics)
     except (SQLAlchemyError, ImportError, OSError) as error:
         raise _build_database_error(error) from None
@@ -146,9 +146,9 @@ def _open_listener(settings: Settings, only_here: bool) -> Iterator[socket.socke
 def _lock_data_folder(settings: Settings) -> Iterator[None]:
     """Lock the data folder against other servers: each would requeue the jobs that the other one runs.
 
-    Servers that share jobs through a broker do not use the folder.
+    The servers of a cluster do not use the folder.
     """
-    if settings.executor == "celery":
+    if settings.executor == "cluster":
         yield
         return
     try:

@@ -1,47 +1,39 @@
-"""What the service under test runs on: SQLite and its own workers, or PostgreSQL, Celery and a broker.
+"""What the service under test runs on: SQLite and its own workers, or PostgreSQL and worker hosts.
 
-The same tests run on each; ``pytest --backend`` chooses, and whoever starts a service asks :data:`CHOSEN` for the
-settings. The engines are started when they are first asked for, and shared by all services of a run: each folder that
-a service is started in has a database and a queue to itself.
+The same tests run on both; ``pytest --backend`` chooses, and whoever starts a service asks :data:`CHOSEN` for the
+settings. PostgreSQL is started when it is first asked for, and shared by all services of a run: each folder that a
+service is started in has a database to itself.
 """
 
 import hashlib
 import threading
 
-from tests.cluster.engines import Postgres, RabbitMQ, Redis
+from tests.cluster.postgres import Postgres
 
-NAMES = ("sqlite+local", "postgres+rabbitmq", "postgres+redis")
-BROKERS = {"rabbitmq": RabbitMQ, "redis": Redis}
+NAMES = ("sqlite", "postgresql")
 
 
 class Backend:
-    """Engines by their names, started at need."""
+    """The chosen database, started at need."""
 
     def __init__(self, name):
         self.name = name
-        self._engines = {}
+        self._postgres = None
         self._lock = threading.Lock()
 
     @property
     def distributed(self):
-        return self.name != NAMES[0]
+        return self.name == "postgresql"
 
     @property
     def postgres(self):
-        return self._started(Postgres)
-
-    @property
-    def broker(self):
-        return self._started(BROKERS[self.name.partition("+")[2]])
-
-    def _started(self, engine):
         with self._lock:
-            if engine not in self._engines:
-                self._engines[engine] = engine()
-            return self._engines[engine]
+            if self._postgres is None:
+                self._postgres = Postgres()
+            return self._postgres
 
     def mark(self, folder):
-        """The name of the database and of the queue of a service in this folder."""
+        """The name of the database of a service in this folder."""
         return f"m{hashlib.sha256(str(folder).encode()).hexdigest()[:16]}"
 
     def store_url(self, folder):
@@ -54,19 +46,12 @@ class Backend:
 
     def settings(self, folder):
         """What a service in this folder has to be told, besides its folder."""
-        if not self.distributed:
-            return {}
-        return {
-            "executor": "celery",
-            "database_url": self.store_url(folder),
-            "broker_url": self.broker.url(),
-            "queue": self.mark(folder),
-        }
+        return {"executor": "cluster", "database_url": self.store_url(folder)} if self.distributed else {}
 
     def remove(self):
-        for engine in self._engines.values():
-            engine.remove()
-        self._engines.clear()
+        if self._postgres is not None:
+            self._postgres.remove()
+            self._postgres = None
 
 
 CHOSEN = Backend(NAMES[0])

@@ -1,4 +1,4 @@
-"""Several servers and worker hosts on one store and one broker, each a process that can be killed and started again."""
+"""Several servers and worker hosts on one store, each a process that can be killed and started again."""
 
 import os
 import signal
@@ -11,7 +11,7 @@ import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
-from tests.cluster.engines import free_port
+from tests.cluster.postgres import free_port
 from tests.support.service.running import SCRIPTED, STACKS, START_S, STOP_S, environment, until, workers_of
 
 OF_A_STACK = "Current thread 0x"
@@ -65,7 +65,7 @@ class Process:
 
 
 class Deployment:
-    """``servers`` servers and ``hosts`` worker hosts that share what the folder has in the engines."""
+    """``servers`` servers and ``hosts`` worker hosts that share the database of the folder."""
 
     def __init__(self, folder: Path, servers=2, hosts=2, **settings):
         self.folder = folder

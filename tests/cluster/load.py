@@ -5,6 +5,7 @@ import threading
 import time
 
 import httpx
+from sqlalchemy import text
 
 from tests.support.service.running import PROBLEM
 from tests.support.service.scripted_server import BRIEF
@@ -69,6 +70,20 @@ class Load:
             assert answer.headers["content-type"] == "application/problem+json"
             self.refused += 1
             time.sleep(0.2)  # refused: Retry-After is seconds, and the load should find the first moment
+
+
+def fill_queue(connection, jobs, tenants, cost="long"):
+    """Store so many queued jobs, one of each tenant in each turn, and have PostgreSQL count them."""
+    connection.execute(
+        text(
+            "INSERT INTO jobs (id, tenant, kind, status, created_at, progress_fraction, progress_message, problem, "
+            "attempt, crashes, revision, cost, turn) "
+            "SELECT lpad(n::text, 26, '0'), 't' || n % :tenants, 'motion', 'queued', '', 0, 'queued', '{}', 0, 0, 1, "
+            ":cost, n / :tenants + 1 FROM generate_series(0, :jobs - 1) AS n"
+        ),
+        {"jobs": jobs, "tenants": tenants, "cost": cost},
+    )
+    connection.execute(text("ANALYZE jobs"))
 
 
 def verdict(accepted, jobs):

@@ -9,7 +9,6 @@ import time
 
 import pytest
 
-from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment, alive_now, signal_quietly
 from tests.cluster.load import WELL, Load, verdict
 from tests.support.service.running import START_S, until
@@ -51,7 +50,7 @@ def test_no_job_is_lost_or_doubled_or_wrong(tmp_path):
         jobs = deployment.jobs()
         became = verdict(load.accepted, jobs)
         print(
-            f"\n{CHOSEN.name}: {len(load.accepted)} jobs accepted from 4 clients, {killed['worker']} workers, "
+            f"\n{len(load.accepted)} jobs accepted from 4 clients, {killed['worker']} workers, "
             f"{killed['host']} worker hosts and {killed['server']} servers killed in {time.monotonic() - began:.0f} s: "
             + ", ".join(f"{len(found)} {what}" for what, found in became.items())
             + f"; the last worker of a killed host was gone after {longest_orphan_s:.2f} s at most; "

@@ -1,1 +1,1 @@
-"""Workers on several hosts: leases, recovery, the broker, and the listener for PostgreSQL notifications."""
+"""Workers on several hosts: leases, recovery, and the notifications of PostgreSQL."""

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 
 import psycopg
 import structlog
 from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.jobs.executor import Changed
+from service.jobs.cluster.notifier import RETRY_PERIOD_S
 from service.jobs.store.database import create_listener_engine
-
-CHANGES_CHANNEL, WORK_CHANNEL = "mechsynth_jobs", "mechsynth_work"
-"""Channels that triggers on the job table notify: changes of state, and newly queued jobs."""
 
 LISTEN_S = 1.0
 """Longest wait for a notification before the thread checks whether it must stop, seconds."""
-
-RETRY_PERIOD_S = 0.5
-"""Pause before a lost connection is restored, seconds."""
 
 log = structlog.get_logger(__name__)
 
@@ -27,11 +22,11 @@ log = structlog.get_logger(__name__)
 class StoreListener(threading.Thread):
     """Calls back with the content of each notification, and with None if it may have missed some."""
 
-    def __init__(self, url: str, channel: str, notify: Changed) -> None:
+    def __init__(self, url: str, channel: str, notify: Callable[[str | None], None]) -> None:
         super().__init__(name="store-listener", daemon=True)
         self._engine = create_listener_engine(url)
         self._channel = channel
-        self._told = notify
+        self._notify = notify
         self._stopping = threading.Event()
 
     def stop(self) -> None:
@@ -55,7 +50,7 @@ class StoreListener(threading.Thread):
             driver = connection.connection.driver_connection
             assert isinstance(driver, psycopg.Connection)
             # Changes before LISTEN took effect were missed: subscribers must read the store once.
-            self._told(None)
+            self._notify(None)
             while not self._stopping.is_set():
                 for notice in driver.notifies(timeout=LISTEN_S):
-                    self._told(notice.payload)
+                    self._notify(notice.payload)

@@ -13,7 +13,6 @@ from collections.abc import Callable
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.jobs.cluster.broker import Publisher
 from service.jobs.cluster.leases import LeaseStore
 from service.jobs.store.database import is_unreachable
 from service.jobs.store.statements import LEASE_S
@@ -25,12 +24,11 @@ log = structlog.get_logger(__name__)
 
 
 class Recovery(threading.Thread):
-    """Recovers jobs, probes the broker and calls ``each_round`` once a second until it is stopped."""
+    """Recovers jobs and calls ``each_round`` once a second until it is stopped."""
 
-    def __init__(self, leases: LeaseStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
+    def __init__(self, leases: LeaseStore, each_round: Callable[[], None] = lambda: None) -> None:
         super().__init__(name="recovery", daemon=True)
         self._leases = leases
-        self._publisher = publisher
         self._each_round = each_round
         self._stopping = threading.Event()
         self._trusted_from = float("-inf")
@@ -43,7 +41,6 @@ class Recovery(threading.Thread):
         """Recover jobs until :meth:`stop`."""
         while not self._stopping.wait(PERIOD_S):
             try:
-                self._publisher.probe()
                 self._each_round()
                 self._take_up_abandoned()
             except SQLAlchemyError as error:

@@ -1,30 +1,26 @@
 """A worker host: takes jobs from the store and runs them in its own workers (``mechsynth worker``).
 
 The lanes and workers are those of the local executor (:mod:`service.jobs.workers.lane`), which handle turns,
-cancellation, timeouts, memory limits and dead workers. A message of the broker only means that there is work: a host
-with a free lane then asks the store for the job whose turn it is. It also does so when PostgreSQL notifies it of a
-queued job, and once a second. While a job runs the host renews its lease; the store answers with the claims that are no
-longer valid, and the host drops their jobs.
+cancellation, timeouts, memory limits and dead workers. A host with a free lane asks the store for the job whose turn it
+is, when PostgreSQL notifies it of a queued job and once a second. While a job runs the host renews its lease; the store
+answers with the claims that are no longer valid, and the host drops their jobs.
 """
 
 from __future__ import annotations
 
-import os
 import signal
 import threading
 import time
 from types import FrameType
 
 import structlog
-from celery.concurrency.thread import TaskPool
-from celery.exceptions import WorkerShutdown
 from prometheus_client import start_http_server
 from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
-from service.jobs.cluster.broker import TASK_NAME, Publisher, create_celery_app
 from service.jobs.cluster.leases import LeaseStore
-from service.jobs.cluster.listener import WORK_CHANNEL, StoreListener
+from service.jobs.cluster.listener import StoreListener
+from service.jobs.cluster.notifier import WORK_CHANNEL, StoreNotifier, read_count
 from service.jobs.cluster.recovery import Recovery
 from service.jobs.store.database import LaterTables, connect, is_unreachable, upgrade
 from service.jobs.workers.local_executor import LocalExecutor
@@ -36,6 +32,9 @@ from service.settings import Settings
 BEAT_PERIOD_S = 0.5
 """Period at which a host renews its leases and checks for cancelled jobs, seconds; these must stop within 2 s."""
 
+STOP_TIMEOUT_S = 2.0
+"""Time limit for the last notifications of a host that stops, seconds."""
+
 log = structlog.get_logger(__name__)
 
 
@@ -44,7 +43,7 @@ class HostError(Exception):
 
 
 class Host:
-    """The lanes of a host, and the sources that wake them."""
+    """The lanes of a host, and the threads that wake them and renew their leases."""
 
     def __init__(self, settings: Settings, metrics: HostMetrics, compilation: Compiling) -> None:
         self.id = str(ULID())
@@ -52,41 +51,44 @@ class Host:
         self._compilation = compilation
         self._engine = connect(settings.store_url, durable=False)
         self._leases = LeaseStore(self._engine)
-        self._publisher = Publisher(settings)
-        self._recovery = Recovery(self._leases, self._publisher, lambda: None)
+        self._recovery = Recovery(self._leases)
         self._beating = threading.Thread(target=self._run_heartbeat, name="beat", daemon=True)
-        self._listener = StoreListener(settings.store_url, WORK_CHANNEL, lambda _: self.lanes.wake())
+        self._notifier = StoreNotifier(settings.store_url)
+        self._listener = StoreListener(
+            settings.store_url, WORK_CHANNEL, lambda payload: self.lanes.wake(read_count(payload))
+        )
         self._stopping = threading.Event()
         metrics.watch(self.lanes.count_ready_workers, lambda: len(self.lanes.list_claims()))
 
     def start(self) -> None:
         """Create missing tables and start the lanes."""
         upgrade(self._engine)
+        self.lanes.subscribe(self._notifier.announce_change)
         self.lanes.start()
         self.lanes.open()
         self._compilation.start(after=lambda: self.lanes.count_ready_workers() > 0)
         self._beating.start()
         self._recovery.start()
+        self._notifier.start()
         self._listener.start()
 
-    def handle_message(self, job_id: str) -> None:
-        """Handle a message from Celery: there is work, this job or another one whose turn is earlier."""
-        self.lanes.submit(job_id)
-
     def stop(self) -> None:
-        """Requeue the running jobs and end the workers. May be called repeatedly."""
-        if self._stopping.is_set():
-            return
+        """Requeue the running jobs and end the workers."""
         self._stopping.set()
         self._compilation.stop()
         self._recovery.stop()
         self._listener.stop()
+        running = len(self.lanes.list_claims())
         self.lanes.stop()
+        for _ in range(running):  # they are queued again
+            self._notifier.announce_work()
+        self._notifier.stop()
         try:
             self._leases.remove_host(self.id)
         except SQLAlchemyError as error:  # the host's last sign of life then expires by itself
             log.warning("the store does not answer", error=type(error).__name__)
-        self._publisher.close()
+        if self._notifier.is_alive():
+            self._notifier.join(STOP_TIMEOUT_S)
 
     def _run_heartbeat(self) -> None:
         while not self._stopping.wait(BEAT_PERIOD_S):
@@ -115,23 +117,14 @@ def run_host(settings: Settings, compilation: Compiling) -> None:
     metrics = HostMetrics()
     host = Host(settings, metrics, compilation)
     serve_metrics(metrics, settings)
-    signal.signal(signal.SIGTERM, _raise_shutdown)
-    signal.signal(signal.SIGINT, _raise_shutdown)
+    signal.signal(signal.SIGTERM, _raise_stop)
+    signal.signal(signal.SIGINT, _raise_stop)
     try:
         _start(host)
-        app = create_celery_app(settings, publisher=False)
-        app.task(host.handle_message, name=TASK_NAME)
-        announcement = threading.Thread(target=_report_ready, args=(host,), name="announcement", daemon=True)
-        announcement.start()
-        app.WorkController(
-            hostname=f"{host.id}@{os.uname().nodename}",
-            pool_cls=_make_pool_class(host),
-            concurrency=1,
-            without_mingle=True,
-            without_gossip=True,
-            without_heartbeat=True,
-        ).start()
-    except WorkerShutdown:
+        _report_ready(host)
+        while True:
+            signal.pause()
+    except _StopSignal:
         pass
     finally:
         # A second signal must not interrupt the requeueing of jobs.
@@ -167,24 +160,15 @@ def serve_metrics(metrics: HostMetrics, settings: Settings) -> None:
     log.info("metrics", host=address, port=port)
 
 
-def _raise_shutdown(_signal: int, _frame: FrameType | None) -> None:
-    raise WorkerShutdown(0)
+class _StopSignal(BaseException):
+    """End of the program by SIGINT or SIGTERM; like KeyboardInterrupt, error handlers must not catch it."""
+
+
+def _raise_stop(_signal: int, _frame: FrameType | None) -> None:
+    raise _StopSignal
 
 
 def _report_ready(host: Host) -> None:
     while host.lanes.count_ready_workers() == 0:
         time.sleep(BEAT_PERIOD_S / 10)  # lanes send no event when they are ready; this polls only at the start
     print(f"mechsynth worker {host.id} is ready", flush=True)
-
-
-def _make_pool_class(host: Host) -> type[TaskPool]:
-    """Return a Celery pool class whose threads run the tasks that wake the lanes of a host."""
-
-    class LanePool(TaskPool):
-        """Celery thread pool that ends the lanes when it is stopped."""
-
-        def on_stop(self) -> None:
-            host.stop()
-            super().on_stop()
-
-    return LanePool

@@ -10,7 +10,21 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Case, ColumnElement, Integer, Update, bindparam, case, func, insert, select, update
+from sqlalchemy import (
+    Case,
+    ColumnElement,
+    Integer,
+    ScalarSelect,
+    Select,
+    Update,
+    bindparam,
+    case,
+    func,
+    insert,
+    literal,
+    select,
+    update,
+)
 from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
@@ -44,7 +58,7 @@ IS_SINGLE_JOB = jobs.c.batch.is_(None)
 """Condition for jobs posted by clients, as opposed to shares of batches."""
 
 
-def build_move(name: str, job_id: str | ColumnElement[str], **values: object) -> Update:
+def build_move(name: str, job_id: str | ColumnElement[str] | ScalarSelect[str], **values: object) -> Update:
     """Build the update that makes the named move with a job in a source state; ``values`` are stored with it."""
     move = MOVES[name]
     return (
@@ -145,41 +159,62 @@ _queued = (
     select(jobs.c.id).where(QUEUED_CONDITION, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
 )
 COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
-# The inserting statement itself counts, so that concurrent inserts cannot all take the last place.
-INSERT_JOB = (
+
+
+def _count_turns(cost: Cost, *, share: bool = False) -> ColumnElement[int]:
+    """Build the number of turns from a tenant's first queued job to its last one, which takes two look-ups."""
+    alike = jobs.c.batch.is_not(None) if share else IS_SINGLE_JOB
+    turns = select(func.coalesce(func.max(jobs.c.turn) - func.min(jobs.c.turn) + 1, 0))
+    return turns.where(QUEUED_CONDITION, jobs.c.tenant == bindparam("of"), jobs.c.cost == cost, alike).scalar_subquery()
+
+
+# The first number is exact up to the limit given; the second is at least the number of queued jobs that do not share a
+# turn. A job that has been requeued has turn 0, which makes the second number large, never too small.
+SELECT_QUEUE_BOUNDS = select(
+    COUNT_QUEUED.scalar_subquery(),
+    sum((_count_turns(cost, share=share) for cost in Cost for share in (False, True)), start=literal(0)),
+)
+_NEW_JOB = select(
+    *(bindparam(name, type_=jobs.c[name].type) for name in _STORED_COLUMNS),
+    build_turn(bindparam("of"), bindparam("as")),
+)
+INSERT_JOB = insert(jobs).from_select([*_STORED_COLUMNS, "turn"], _NEW_JOB)
+# This statement itself counts, so that concurrent inserts cannot all take the last place.
+INSERT_JOB_UNLESS_FULL = (
     insert(jobs)
     .from_select(
         [*_STORED_COLUMNS, "turn"],
-        select(
-            *(bindparam(name, type_=jobs.c[name].type) for name in _STORED_COLUMNS),
-            build_turn(bindparam("of"), bindparam("as")),
-        ).where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
+        _NEW_JOB.where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
     )
     .execution_options(preserve_rowcount=True)
 )
 # Skips jobs that another host is about to claim; with SQLite only one process claims jobs.
 SELECT_NEXT = (
     select(jobs.c.id)
-    .where(QUEUED_CONDITION, jobs.c.cost == bindparam("cost"))
+    .where(QUEUED_CONDITION, jobs.c.cost == bindparam("as"))
     .order_by(jobs.c.turn, jobs.c.id)
     .limit(1)
     .with_for_update(skip_locked=True)
 )
 SELECT_NEXT_OF_OTHERS = SELECT_NEXT.where(jobs.c.tenant.not_in(bindparam("passed_over", expanding=True)))
-UPDATE_CLAIMED = (
-    update(jobs)
-    .where(jobs.c.id == bindparam("job"), jobs.c.status.in_(MOVES["claim"].sources))
-    .values(
-        status=MOVES["claim"].target,
-        revision=jobs.c.revision + 1,
+
+
+def build_claim(following: Select[tuple[str]]) -> ReturningUpdate[Any]:
+    """Build the update that claims the job that a query finds, in one statement and so in one trip."""
+    return build_move(
+        "claim",
+        # Found before the update and once: PostgreSQL might repeat a subquery, and lock another job each time.
+        select(following.cte("following").c.id).scalar_subquery(),
         progress_message="running",
         started_at=bindparam("moment"),
         attempt=jobs.c.attempt + 1,
         claim=bindparam("mark"),
         due_at=StoreClock() + LEASE_S,
-    )
-    .returning(*CLAIM_COLUMNS)
-)
+    ).returning(*CLAIM_COLUMNS)
+
+
+CLAIM_NEXT = build_claim(SELECT_NEXT)
+CLAIM_NEXT_OF_OTHERS = build_claim(SELECT_NEXT_OF_OTHERS)
 SELECT_CLAIMED = select(*CLAIM_COLUMNS).where(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark"))
 _IS_ATTEMPT = jobs.c.attempt == bindparam("of")
 UPDATE_SUCCEEDED = build_move(

@@ -92,9 +92,9 @@ class LocalExecutor:
         """Submit a queued job; it runs when its turn comes."""
         self.wake()
 
-    def wake(self) -> None:
-        """Wake a free lane, if there is one, to ask for a job."""
-        self._turns.wake()
+    def wake(self, jobs: int = 1) -> None:
+        """Wake free lanes, one for each new job as far as there are any, to ask for a job."""
+        self._turns.wake(jobs)
 
     def cancel(self, job_id: str) -> None:
         """Stop the job if a lane runs it; a waiting job, already cancelled in the store, cannot be claimed any more."""

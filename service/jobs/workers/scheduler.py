@@ -90,11 +90,11 @@ class Turns:
             self._calls += 1
             self._news.notify_all()
 
-    def wake(self) -> None:
-        """Note that a job may have been queued. Callable from any thread."""
+    def wake(self, jobs: int = 1) -> None:
+        """Note that so many jobs may have been queued. Callable from any thread."""
         with self._news:
-            self._calls += 1
-            self._news.notify()
+            self._calls += jobs
+            self._news.notify(jobs)
 
     def take(self, seat: Seat, free_since: float) -> Claim | None:
         """Claim a job for a lane that has been free since ``free_since`` (monotonic clock, seconds).

@@ -51,6 +51,28 @@ def test_a_setting_that_cannot_be_used(tmp_path, name, value):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "value", "instead"),
+    [("executor", "celery", "cluster"), ("executor", "cluster", "MECHSYNTH_DATABASE_URL"),
+     ("broker_url", "amqp://mq.example//", "PostgreSQL"), ("queue", "mechsynth", "PostgreSQL")],
+)  # fmt: skip
+def test_a_setting_of_a_cluster_that_cannot_be_used_says_what_replaces_it(tmp_path, name, value, instead):
+    for command in ("serve", "worker"):
+        done = mechsynth(tmp_path, command, **{name: value})
+        assert done.returncode == 2
+        assert f"MECHSYNTH_{name.upper()}" in done.stderr
+        assert instead in done.stderr
+        assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_a_worker_host_needs_a_shared_database(tmp_path):
+    done = mechsynth(tmp_path, "worker")
+    assert done.returncode == 2
+    assert "MECHSYNTH_EXECUTOR=cluster" in done.stderr
+
+
+@pytest.mark.slow
 def test_a_port_in_use(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         done = mechsynth(tmp_path, "serve", port=other.getsockname()[1])

@@ -30,18 +30,13 @@ class Leases:
         return []
 
 
-class Publisher:
-    def probe(self):
-        pass
-
-
 @pytest.mark.parametrize("away_s", [0.5 * LEASE_S, 0.95 * LEASE_S, 1.5 * LEASE_S])
 def test_hosts_may_renew_their_leases_first_when_the_store_comes_back(monkeypatch, away_s):
     """However long it was away, and whenever in that time it was found to be so."""
     monkeypatch.setattr(recovery, "LEASE_S", LEASE_S)
     monkeypatch.setattr(recovery, "PERIOD_S", PERIOD_S)
     leases = Leases(time.monotonic() + away_s)
-    thread = Recovery(leases, Publisher(), lambda: None)
+    thread = Recovery(leases)
     thread.start()
     try:
         until(lambda: leases.taken_at, SOON_S, "the job taken back")

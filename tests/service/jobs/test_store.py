@@ -7,15 +7,15 @@ from importlib.resources import files
 import pytest
 from alembic import command
 from alembic.config import Config
-from sqlalchemy import delete, insert, select, text, update
+from sqlalchemy import bindparam, delete, insert, select, text, update
 
 from service.access.keys import api_keys
 from service.jobs.cluster.leases import LeaseStore
 from service.jobs.job_store import JobStore
 from service.jobs.store.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.store.database import LaterTables, connect, upgrade
-from service.jobs.store.schema import StoreClock, format_now, hosts, jobs, metadata
-from service.jobs.store.statements import LEASE_S, MAX_CRASHES, MAX_KILLS, UPDATE_CLAIMED, build_row
+from service.jobs.store.schema import QUEUED_CONDITION, StoreClock, format_now, hosts, jobs, metadata
+from service.jobs.store.statements import LEASE_S, MAX_CRASHES, MAX_KILLS, build_claim, build_row
 from service.jobs.store.states import FINISHED_STATES, MOVES, Cost, Status
 from tests.cluster.backend import CHOSEN
 
@@ -65,7 +65,8 @@ def job(store):
 def claim(store, job_id, mark):
     """Claim this job as :meth:`JobStore.take` does, whosever turn it is; its row, or None."""
     with store._engine.begin() as connection:
-        return connection.execute(UPDATE_CLAIMED, {"job": job_id, "mark": mark, "moment": format_now()}).one_or_none()
+        change = build_claim(select(jobs.c.id).where(jobs.c.id == bindparam("job"), QUEUED_CONDITION))
+        return connection.execute(change, {"job": job_id, "mark": mark, "moment": format_now()}).one_or_none()
 
 
 def put(engine, job_id, status, attempt=1):

@@ -1,4 +1,4 @@
-"""Leases of running jobs, the time of the next check of unfinished ones, the worker hosts, and notifications."""
+"""Leases of running jobs, the time of the next check of unfinished ones, and the worker hosts."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -10,18 +10,8 @@ depends_on = None
 
 UNFINISHED_STATES = ("queued", "running")
 
-# When any process stores a new state of a job, all listeners are notified of the job's id.
-NOTIFY_FUNCTION = """
-CREATE FUNCTION tell_of_job() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-    PERFORM pg_notify('mechsynth_jobs', NEW.id);
-    RETURN NULL;
-END $$
-"""
-MOVES_TRIGGER = """
-CREATE TRIGGER jobs_tell AFTER UPDATE OF status ON jobs FOR EACH ROW
-WHEN (OLD.status IS DISTINCT FROM NEW.status) EXECUTE FUNCTION tell_of_job()
-"""
+# Earlier versions also made a trigger that notified all listeners of each new state of a job. The processes do this
+# themselves since. Where the trigger exists it stays until no process relies on it: the next revision may drop it.
 
 
 def upgrade() -> None:
@@ -38,14 +28,12 @@ def upgrade() -> None:
         op.create_index(
             "jobs_by_due_at", "jobs", ["due_at"], postgresql_where=sa.column("status").in_(UNFINISHED_STATES)
         )
-        op.execute(NOTIFY_FUNCTION)
-        op.execute(MOVES_TRIGGER)
 
 
 def downgrade() -> None:
     if op.get_bind().dialect.name == "postgresql":
-        op.execute("DROP TRIGGER jobs_tell ON jobs")
-        op.execute("DROP FUNCTION tell_of_job")
+        op.execute("DROP TRIGGER IF EXISTS jobs_tell ON jobs")
+        op.execute("DROP FUNCTION IF EXISTS tell_of_job")
         op.drop_index("jobs_by_due_at", "jobs")
     op.drop_table("hosts")
     for name in ("due_at", "queued_at", "claim"):

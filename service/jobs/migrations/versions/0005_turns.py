@@ -10,18 +10,7 @@ depends_on = None
 
 QUEUED_CONDITION = sa.text("status = 'queued'")
 
-# When any process queues a job, idle worker hosts are notified.
-NOTIFY_FUNCTION = """
-CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-    PERFORM pg_notify('mechsynth_work', '');
-    RETURN NULL;
-END $$
-"""
-WORK_TRIGGER = """
-CREATE TRIGGER jobs_tell_of_work AFTER INSERT OR UPDATE OF status ON jobs FOR EACH ROW
-WHEN (NEW.status = 'queued') EXECUTE FUNCTION tell_of_work()
-"""
+# Earlier versions also made a trigger that notified worker hosts of queued jobs; see revision 0004.
 
 
 def upgrade() -> None:
@@ -31,15 +20,12 @@ def upgrade() -> None:
         op.create_index(
             f"jobs_queued_by_{name}", "jobs", columns, sqlite_where=QUEUED_CONDITION, postgresql_where=QUEUED_CONDITION
         )
-    if op.get_bind().dialect.name == "postgresql":
-        op.execute(NOTIFY_FUNCTION)
-        op.execute(WORK_TRIGGER)
 
 
 def downgrade() -> None:
     if op.get_bind().dialect.name == "postgresql":
-        op.execute("DROP TRIGGER jobs_tell_of_work ON jobs")
-        op.execute("DROP FUNCTION tell_of_work")
+        op.execute("DROP TRIGGER IF EXISTS jobs_tell_of_work ON jobs")
+        op.execute("DROP FUNCTION IF EXISTS tell_of_work")
     for name in ("tenant", "turn"):
         op.drop_index(f"jobs_queued_by_{name}", "jobs")
     for name in ("turn", "cost"):
