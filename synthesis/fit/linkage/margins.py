@@ -40,9 +40,9 @@ from synthesis.fit.linkage.setting import (
     PIN_COUNT,
     PIVOT_BOX,
     PIVOT_COUNT,
+    POINT_NODE,
     RATIO,
     STEPS,
-    TRACED,
     TRIAD,
     WORKSPACE_BOX,
     unpack_table,
@@ -210,7 +210,7 @@ def write_step_values(
         values[number + side] = np.inf
         if abs(limit) < np.inf:
             for k in range(len(pins) + 1):
-                node = pins[k] if k < len(pins) else int(setting[TRACED])
+                node = pins[k] if k < len(pins) else int(setting[POINT_NODE])
                 values[number + side] = min(values[number + side], toward * (places[node, side // 2] - limit))
     return hand
 
@@ -250,7 +250,7 @@ def write_step_gradients(
         if not abs(limit) < np.inf:
             continue
         for k in range(len(pins) + 1):
-            node = pins[k] if k < len(pins) else int(setting[TRACED])
+            node = pins[k] if k < len(pins) else int(setting[POINT_NODE])
             # Only the joint that is nearest to the side determines the margin.
             if toward * (places[node, side // 2] - limit) <= values[number + side]:
                 spread_slopes(slopes[node, side // 2], by_ends, toward, gradients[number + side])

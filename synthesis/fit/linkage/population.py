@@ -17,7 +17,7 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants
 from synthesis.fit.linkage.margins import get_triad_pins
-from synthesis.fit.linkage.setting import FAMILY, TRACED, TRIAD, pack_topology, unpack_table
+from synthesis.fit.linkage.setting import FAMILY, POINT_NODE, TRIAD, pack_topology, unpack_table
 from synthesis.fit.linkage.topology import CRANK, DYAD, FIXED, POINT, VIEW, Topology
 from synthesis.fit.triad_slant import find_min_slant
 
@@ -193,7 +193,7 @@ def _sweep_views(nodes: Integers, setting: Real, cosine: float, z: Real, curve: 
     n, steps = len(nodes), len(curve)
     constants, places, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.zeros(n)
     compute_constants(nodes, z, constants)
-    point, hand = int(setting[TRACED]), 0.0
+    point, hand = int(setting[POINT_NODE]), 0.0
     for s in range(steps):
         if not close_linkage(nodes, z, constants, 2.0 * math.pi * s / steps, places, cosines):
             return False
@@ -221,7 +221,7 @@ def _has_one_turn(places: Real, pin: int, pivot: int) -> bool:
 def _draw_each(rng: np.random.Generator, setting: Real, cosine: float, z: Real, curves: Complex) -> int:
     """Draw linkages into the rows of ``z``, and their curves; return their number."""
     nodes, transmitting, _, _, _ = unpack_table(setting)
-    n, steps, point = len(nodes), curves.shape[1], int(setting[TRACED])
+    n, steps, point = len(nodes), curves.shape[1], int(setting[POINT_NODE])
     places, drawn = np.zeros((n, steps, 2)), 0
     viewed = setting[TRIAD][0] >= 0.0
     for _ in range(len(z)):

@@ -17,8 +17,8 @@ derivative by the input (variable projection). Other inputs are constants.
 The *way back* are the distances of the traced point, at equal steps of the input, from the polyline through the points,
 weighted by the arc length that each step stands for.
 
-Instead of squares, the *robust* form sums w(√(d² + δ²) − δ), which is nearly the mean distance and lets corners be cut,
-and each point may be met anywhere on the curve, whatever the order of the points. With f = √(d² + δ²) a distance has
+The *robust* form sums w(√(d² + δ²) − δ) instead of squares, which is nearly the mean distance, and takes the place of
+the curve that is nearest to each point, in any order. With f = √(d² + δ²) a distance has
 the row √(w/f) d, whose gradient is exact; one more row without derivatives, √Σ w(f − δ)²/f, completes the sum.
 
 A linkage moves over a full turn of its input, or in a range whose ends are the last two unknowns (robust form) or the
@@ -51,7 +51,7 @@ from synthesis.fit.linkage.margins import (
     write_step_gradients,
     write_step_values,
 )
-from synthesis.fit.linkage.setting import BACK, FULL_TURN, STEPS, TRACED, WIDTH, unpack_table
+from synthesis.fit.linkage.setting import BACK, FULL_TURN, POINT_NODE, STEPS, WIDTH, unpack_table
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
@@ -265,6 +265,140 @@ def _measure_arcs(curve: Real, closed: bool, arcs: Real) -> None:
         arcs[k] /= max(total, MIN_SPEED)
 
 
+@njit(**OPTIONS)
+def _write_target_rows(
+    x: Real, targets: Real, setting: Real, nodes: Integers, constants: Real, curve: Real, begin: float, per: float,
+    low: float, high: float, inputs: Real, first_places: Real, first_slopes: Real, residuals: Real, jacobian: Real,
+) -> tuple[int, float]:  # fmt: skip
+    """Write the rows of all targets; return their number and the part of the robust sum that they leave out.
+
+    The number is −1 if the linkage does not close at an input. ``inputs`` (slots,) settle in place within [low, high].
+    ``curve`` (steps, 2) is the traced curve from the input ``begin`` in steps of ``per``, for the robust form.
+    ``first_places`` and ``first_slopes`` receive the nodes at the first target and their derivatives.
+    """
+    n, count, unknowns, point = len(nodes), len(targets), len(x), int(setting[POINT_NODE])
+    robust, width = setting[WIDTH] > 0.0, setting[WIDTH]
+    places, rates, cosines = np.empty((n, 2)), np.empty((n, 2)), np.zeros(n)
+    slopes, tangent, turn = np.zeros((n, 2, 1 + 2 * n)), np.empty(2 * count), np.zeros(unknowns)
+    left_out, m, first = 0.0, 0, 0
+    while first < count:
+        slot, free = int(targets[first, SLOT]), targets[first, FREE] > 0.0
+        last = first + 1
+        while last < count and int(targets[last, SLOT]) == slot:
+            last += 1
+        theta = inputs[slot]
+        if robust:
+            near = np.inf
+            if low <= theta <= high and close_linkage(nodes, x, constants, theta, places, cosines):
+                near = (places[point, 0] - targets[first, X]) ** 2 + (places[point, 1] - targets[first, Y]) ** 2
+            theta = _find_nearest_step(targets[first], curve, theta, begin, per, near)
+        if free:
+            theta = _settle_input(
+                targets, first, last, nodes, x, constants, theta, low, high, places, rates, cosines, residuals[m:],
+                tangent,
+            )  # fmt: skip
+        # Negated: NaN means that the linkage does not close.
+        if not abs(theta) < np.inf or not close_linkage(nodes, x, constants, theta, places, cosines):
+            return -1, 0.0
+        inputs[slot] = theta
+        differentiate_nodes(nodes, x, constants, theta, places, slopes)
+        for k in range(n):
+            rates[k, 0], rates[k, 1] = slopes[k, 0, 0], slopes[k, 1, 0]
+        added = _measure_slot(targets, first, last, x, places, rates, residuals[m:], tangent)
+        _write_slot_slopes(targets, first, last, x, places, slopes, jacobian[m:])
+        turn[:] = 0.0
+        if free and low < theta < high:
+            _eliminate_input(tangent, added, jacobian[m:], turn)
+        elif free:
+            # At an end of the range the input moves with it.
+            end = unknowns - 2 if theta <= low else unknowns - 1
+            turn[end] = 1.0
+            for k in range(added):
+                jacobian[m + k, end] += tangent[k]
+        if first == 0:
+            first_places[:] = places
+            for k in range(n):
+                for axis in range(2):
+                    first_slopes[k, axis] = slopes[k, axis, 0] * turn
+                    for c in range(2 * n):
+                        first_slopes[k, axis, c] += slopes[k, axis, 1 + c]
+        if robust:
+            left_out += _weight_robustly(width, m + added, m, residuals, jacobian, targets[first, ROOT])
+        m, first = m + added, last
+    return m, left_out
+
+
+@njit(**OPTIONS)
+def _write_back_row(
+    places: Real, slopes: Real, by_ends: Real, targets: Real, setting: Real, arc: float, m: int, residuals: Real,
+    jacobian: Real,
+) -> float:  # fmt: skip
+    """Write the row m of the way back at one step; return the part of the robust sum that it leaves out."""
+    point, nodes, unknowns = int(setting[POINT_NODE]), len(places), jacobian.shape[1]
+    off_x, off_y, side_x, side_y = find_nearest_side(
+        places[point, 0], places[point, 1], targets, setting[FULL_TURN] > 0.0
+    )  # fmt: skip
+    root = math.sqrt(setting[BACK] * arc)
+    residuals[m] = root * (off_x * side_x + off_y * side_y)
+    spread_slopes(slopes[point, 0], by_ends, root * side_x, jacobian[m])
+    for c in range(2 * nodes):
+        jacobian[m, c] += root * side_y * slopes[point, 1, 1 + c]
+    for c in range(2 * nodes, unknowns):
+        jacobian[m, c] += root * side_y * by_ends[c - 2 * nodes] * slopes[point, 1, 0]
+    if setting[WIDTH] > 0.0 and root > 0.0:
+        left: float = _weight_robustly(setting[WIDTH], m + 1, m, residuals, jacobian, root)
+        return left
+    return 0.0
+
+
+@njit(**OPTIONS)
+def _write_step_rows(
+    x: Real, targets: Real, setting: Real, multipliers: Real, nodes: Integers, transmitting: Integers, pins: Integers,
+    constants: Real, curve: Real, begin: float, per: float, number: int, values: Real, gradients: Real, m: int,
+    residuals: Real, jacobian: Real,
+) -> tuple[int, float]:  # fmt: skip
+    """Write the margins of all steps of the input, from ``number`` on, and the rows of the way back, from m on.
+
+    Returns the number of rows and the part of the robust sum that they leave out; the number is −1 if the linkage does
+    not close at a step or turns over.
+    """
+    n, steps, full, back = len(nodes), len(curve), setting[FULL_TURN] > 0.0, setting[BACK] > 0.0
+    places, cosines, slopes = np.empty((n, 2)), np.zeros(n), np.zeros((n, 2, 1 + 2 * n))
+    arcs, by_ends = np.empty(steps), np.zeros(2)
+    step_count, hand, left_out = count_step_margins(transmitting, setting), 0.0, 0.0
+    if back:
+        if setting[WIDTH] <= 0.0 and not _trace_steps(
+            nodes, x, constants, begin, per, int(setting[POINT_NODE]), places, cosines, curve
+        ):
+            return -1, 0.0
+        _measure_arcs(curve, full, arcs)
+    for k in range(steps):
+        theta = begin + per * k
+        if not close_linkage(nodes, x, constants, theta, places, cosines):
+            return -1, 0.0
+        sine = write_step_values(transmitting, pins, places, cosines, setting, number, values)
+        # A sign change between two steps means that a triad has passed a toggle, where the input turns back.
+        if hand * sine < 0.0:
+            return -1, 0.0
+        hand = sine
+        loaded = is_loaded(number, step_count, multipliers, values)
+        if loaded or back:
+            differentiate_nodes(nodes, x, constants, theta, places, slopes)
+            if not full and setting[WIDTH] > 0.0:
+                by_ends[1] = k / max(steps - 1.0, 1.0)
+                by_ends[0] = 1.0 - by_ends[1]
+        if loaded:
+            write_step_gradients(
+                nodes, x, constants, transmitting, pins, places, slopes, by_ends, cosines, setting, number, values,
+                gradients,
+            )  # fmt: skip
+        if back:
+            left_out += _write_back_row(places, slopes, by_ends, targets, setting, arcs[k], m, residuals, jacobian)
+            m += 1
+        number += step_count
+    return m, left_out
+
+
 @njit(ROWS, **OPTIONS)
 def compute_linkage_rows(
     x: Real, targets: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -287,124 +421,45 @@ def compute_linkage_rows(
     if not np.abs(x).max() < MAX_COORDINATE:
         return -1
     nodes, transmitting, pairs, pivots, pins = unpack_table(setting)
-    n, count, unknowns = len(nodes), len(targets), len(x)
-    point, steps, full = int(setting[TRACED]), int(setting[STEPS]), setting[FULL_TURN] > 0.0
-    width, robust = setting[WIDTH], setting[WIDTH] > 0.0
-    limits = count_margins(setting)
+    n, unknowns, steps = len(nodes), len(x), int(setting[STEPS])
+    full, robust, limits = setting[FULL_TURN] > 0.0, setting[WIDTH] > 0.0, count_margins(setting)
     slots = len(state) - limits
-    constants, places, rates, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.empty((n, 2)), np.zeros(n)
-    slopes, tangent, turn = np.zeros((n, 2, 1 + 2 * n)), np.empty(2 * count), np.zeros(unknowns)
+    constants, curve = np.empty((n, CONSTANT_COUNT)), np.empty((steps, 2))
     compute_constants(nodes, x, constants)
     # A full turn has no ends: its last step would repeat the first.
-    low, high = -np.inf, np.inf
+    low, high, begin, per = -np.inf, np.inf, 0.0, 2.0 * math.pi / max(steps, 1)
     if not full and robust:
         low, high = x[unknowns - 2], x[unknowns - 1]
         if not low < high:
             return -1
-    curve, arcs = np.empty((steps, 2)), np.empty(steps)
-    begin, per = 0.0, 2.0 * math.pi / max(steps, 1)
-    if not full and robust:
         begin, per = low, (high - low) / max(steps - 1, 1)
-    if robust and not _trace_steps(nodes, x, constants, begin, per, point, places, cosines, curve):
+    places, cosines = np.empty((n, 2)), np.zeros(n)
+    if robust and not _trace_steps(
+        nodes, x, constants, begin, per, int(setting[POINT_NODE]), places, cosines, curve
+    ):  # fmt: skip
         return -1
-    left_out, m, first = 0.0, 0, 0
-    first_places, first_slopes = np.empty((n, 2)), np.empty((n, 2, unknowns))
-    while first < count:
-        slot, free = int(targets[first, SLOT]), targets[first, FREE] > 0.0
-        last = first + 1
-        while last < count and int(targets[last, SLOT]) == slot:
-            last += 1
-        theta = state[slot]
-        if robust:
-            near = np.inf
-            if low <= theta <= high and close_linkage(nodes, x, constants, theta, places, cosines):
-                near = (places[point, 0] - targets[first, X]) ** 2 + (places[point, 1] - targets[first, Y]) ** 2
-            theta = _find_nearest_step(targets[first], curve, theta, begin, per, near)
-        if free:
-            theta = _settle_input(
-                targets, first, last, nodes, x, constants, theta, low, high, places, rates, cosines, residuals[m:],
-                tangent,
-            )  # fmt: skip
-        # Negated: NaN means that the linkage does not close.
-        if not abs(theta) < np.inf or not close_linkage(nodes, x, constants, theta, places, cosines):
-            return -1
-        state[slot] = theta
-        differentiate_nodes(nodes, x, constants, theta, places, slopes)
-        for k in range(n):
-            rates[k, 0], rates[k, 1] = slopes[k, 0, 0], slopes[k, 1, 0]
-        added = _measure_slot(targets, first, last, x, places, rates, residuals[m:], tangent)
-        _write_slot_slopes(targets, first, last, x, places, slopes, jacobian[m:])
-        turn[:] = 0.0
-        if free and low < theta < high:
-            _eliminate_input(tangent, added, jacobian[m:], turn)
-        elif free:
-            # At an end of the range the input moves with it.
-            end = unknowns - 2 if theta <= low else unknowns - 1
-            turn[end] = 1.0
-            for k in range(added):
-                jacobian[m + k, end] += tangent[k]
-        if first == 0:
-            first_places[:] = places
-            for k in range(n):
-                for axis in range(2):
-                    first_slopes[k, axis] = 0.0
-                    for c in range(2 * n):
-                        first_slopes[k, axis, c] = slopes[k, axis, 1 + c]
-                    for c in range(unknowns):
-                        first_slopes[k, axis, c] += slopes[k, axis, 0] * turn[c]
-        if robust:
-            left_out += _weight_robustly(width, m + added, m, residuals, jacobian, targets[first, ROOT])
-        m, first = m + added, last
+    first_slopes = np.empty((n, 2, unknowns))
+    m, left_out = _write_target_rows(
+        x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], places, first_slopes,
+        residuals, jacobian,
+    )  # fmt: skip
+    if m < 0:
+        return -1
     if not full and not robust:
         # The range follows the targets; its ends are constants of the descent.
         begin, high = min(0.0, state[:slots].min()), max(0.0, state[:slots].max())
         per = (high - begin) / max(steps - 1, 1)
     values, gradients = state[slots:], np.empty((limits, unknowns))
     values[:] = np.inf
-    number = write_static_margins(
-        x, pairs, pivots, pins, first_places, first_slopes, setting, multipliers, values, gradients
-    )
-    step_count, hand, back = count_step_margins(transmitting, setting), 0.0, setting[BACK]
-    if back > 0.0:
-        if not robust and not _trace_steps(nodes, x, constants, begin, per, point, places, cosines, curve):
-            return -1
-        _measure_arcs(curve, full, arcs)
-    by_ends = np.zeros(2)
-    for k in range(steps):
-        theta = begin + per * k
-        if not close_linkage(nodes, x, constants, theta, places, cosines):
-            return -1
-        sine = write_step_values(transmitting, pins, places, cosines, setting, number, values)
-        # A sign change between two steps means that a triad has passed a toggle, where the input turns back.
-        if hand * sine < 0.0:
-            return -1
-        hand = sine
-        loaded = is_loaded(number, step_count, multipliers, values)
-        if loaded or back > 0.0:
-            differentiate_nodes(nodes, x, constants, theta, places, slopes)
-            if not full and robust:
-                by_ends[1] = k / max(steps - 1.0, 1.0)
-                by_ends[0] = 1.0 - by_ends[1]
-        if loaded:
-            write_step_gradients(
-                nodes, x, constants, transmitting, pins, places, slopes, by_ends, cosines, setting, number, values,
-                gradients,
-            )  # fmt: skip
-        if back > 0.0:
-            off_x, off_y, side_x, side_y = find_nearest_side(places[point, 0], places[point, 1], targets, full)
-            root = math.sqrt(back * arcs[k])
-            residuals[m] = root * (off_x * side_x + off_y * side_y)
-            spread_slopes(slopes[point, 0], by_ends, root * side_x, jacobian[m])
-            for c in range(2 * n):
-                jacobian[m, c] += root * side_y * slopes[point, 1, 1 + c]
-            for c in range(2 * n, unknowns):
-                jacobian[m, c] += root * side_y * by_ends[c - 2 * n] * slopes[point, 1, 0]
-            if robust and root > 0.0:
-                left_out += _weight_robustly(width, m + 1, m, residuals, jacobian, root)
-            m += 1
-        number += step_count
+    number = write_static_margins(x, pairs, pivots, pins, places, first_slopes, setting, multipliers, values, gradients)
+    m, more = _write_step_rows(
+        x, targets, setting, multipliers, nodes, transmitting, pins, constants, curve, begin, per, number, values,
+        gradients, m, residuals, jacobian,
+    )  # fmt: skip
+    if m < 0:
+        return -1
     if robust:
-        residuals[m] = math.sqrt(left_out)
+        residuals[m] = math.sqrt(left_out + more)
         jacobian[m] = 0.0
         m += 1
     return append_limit_rows(values, gradients, EQUATION_COUNT, multipliers, residuals, jacobian, m)

@@ -45,7 +45,7 @@ NODE_COUNT, PAIR_COUNT = SETTING.index("node_count"), SETTING.index("pair_count"
 PIVOT_COUNT, PIN_COUNT = SETTING.index("pivot_count"), SETTING.index("pin_count")
 """Numbers of fixed pivots and of moving pins."""
 
-TRACED = SETTING.index("point")
+POINT_NODE = SETTING.index("point")
 """Node of the traced point."""
 
 FAMILY = SETTING.index("family")
@@ -97,7 +97,7 @@ def pack_topology(topology: Topology) -> Real:
     pairs = topology.pairs
     out[NODE_COUNT], out[PAIR_COUNT] = len(topology.nodes), len(pairs)
     out[PIVOT_COUNT], out[PIN_COUNT] = len(topology.fixed_pivots), len(topology.moving_pins)
-    out[TRACED], out[FAMILY], out[FIRST_FOURBAR] = topology.point, -1.0, topology.families or -1.0
+    out[POINT_NODE], out[FAMILY], out[FIRST_FOURBAR] = topology.point, -1.0, topology.families or -1.0
     out[TRIAD], out[FULL_TURN], out[STEPS], out[BACK], out[WIDTH] = topology.triad or -1.0, 1.0, 0.0, 0.0, 0.0
     out[LINKS], out[GIVEN_PIVOTS] = (0.0, math.inf), math.nan
     for box in (INPUT_BOX, PIVOT_BOX, MOVING_BOX, WORKSPACE_BOX):

@@ -229,7 +229,8 @@ def _ground_second(chain: Dyads) -> Dyads:
     numbers = {GROUND: GROUND, INPUT: INPUT}
     for m, joined in enumerate(chain, 1):
         exchanged = joined[0] == GROUND
-        renumbered.append(tuple(numbers[link] for link in (joined[::-1] if exchanged else joined)))  # type: ignore[arg-type]
+        first, second = joined[::-1] if exchanged else joined
+        renumbered.append((numbers[first], numbers[second]))
         numbers[2 * m], numbers[2 * m + 1] = (2 * m + 1, 2 * m) if exchanged else (2 * m, 2 * m + 1)
     return tuple(renumbered)
 

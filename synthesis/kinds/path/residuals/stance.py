@@ -27,7 +27,7 @@ from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
 from synthesis.fit.coupler_curve import place_with_slopes
 from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants, differentiate_nodes
 from synthesis.fit.linkage.residuals import compute_linkage_rows
-from synthesis.fit.linkage.setting import TRACED, unpack_table
+from synthesis.fit.linkage.setting import POINT_NODE, unpack_table
 from synthesis.kinds.path.residuals.curve_descent import count_links, is_jamming, measure_pivot_violations
 from synthesis.kinds.path.residuals.points import compute_path_rows
 from synthesis.numerics.array_layout import ArrayLayout
@@ -297,7 +297,7 @@ def compute_linkage_stance_rows(
         return -1
     state[:n], state[n + MARGIN_COUNT :] = inner[:n], inner[n:]
     nodes, _, _, _, _ = unpack_table(own)
-    count, point, unknowns = len(nodes), int(own[TRACED]), len(x)
+    count, point, unknowns = len(nodes), int(own[POINT_NODE]), len(x)
     constants, joints, cosines = np.empty((count, CONSTANT_COUNT)), np.empty((count, 2)), np.zeros(count)
     slopes, by_point = np.zeros((count, 2, 1 + 2 * count)), np.zeros(unknowns + 1, np.complex128)
     compute_constants(nodes, x, constants)
