@@ -12,7 +12,7 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 
-class DesignScheduling(LoadScopeScheduling):  # type: ignore[misc]
+class DesignScheduling(LoadScopeScheduling):
     """Runs all tests of one design in one process, which makes its solids once, and all others by file."""
 
     def _split_scope(self, nodeid: str) -> str:

@@ -85,7 +85,7 @@ class Postgres:
             if self.process.poll() is not None or time.monotonic() > deadline:
                 self.stop()
                 raise AssertionError(f"PostgreSQL does not start: {(self.folder / 'log').read_text()[-3000:]}")
-            time.sleep(0.1)  # a server that starts tells nobody
+            time.sleep(0.1)  # a starting server has no event to wait for; START_S bounds the loop
 
     def stop(self, how=signal.SIGINT):
         """End it; by default it breaks off what is under way ("fast"), as an administrator would."""

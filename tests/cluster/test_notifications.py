@@ -75,7 +75,7 @@ def test_a_single_change_is_heard_at_once(notified):
         notifier.announce_change(job_id(n))
         until(lambda n=n: heard[CHANGES_CHANNEL][-1] == job_id(n), SOON_S, "the change")
         waits.append(time.monotonic() - began)
-        time.sleep(0.1)  # the next one is alone again
+        time.sleep(5.0 * BUNDLE_S)  # longer than a bundle, so that the next change has one of its own
     assert min(waits) < 0.5
 
 
@@ -85,7 +85,8 @@ def test_changes_are_heard_again_after_a_restart(notified):
 
     def announced():
         notifier.announce_change(job_id(7))
-        time.sleep(0.1)  # one that is lost with its connection is not sent again
+        # A change that is lost with its connection is not sent again: leave this one time to arrive, then repeat it.
+        time.sleep(5.0 * BUNDLE_S)
         return job_id(7) in heard[CHANGES_CHANNEL]
 
     until(announced, SOON_S, "a change")

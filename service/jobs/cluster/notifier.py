@@ -82,9 +82,8 @@ class StoreNotifier(threading.Thread):
             try:
                 with self._engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
                     self._send_bundles(connection)
-            except Exception as error:  # errors of psycopg and of SQLAlchemy both arrive here
-                if not isinstance(error, (OSError, SQLAlchemyError, psycopg.Error)):
-                    log.exception("the store could not be notified")
+            except (OSError, SQLAlchemyError, psycopg.Error) as error:
+                # All that wait also read the store, so that a lost bundle only costs them up to a second.
                 log.warning("no notifications to the store", error=type(error).__name__)
                 self._stopping.wait(RETRY_PERIOD_S)
 

@@ -91,7 +91,7 @@ class Turns:
             self._news.notify_all()
 
     def wake(self, jobs: int = 1) -> None:
-        """Note that so many jobs may have been queued. Callable from any thread."""
+        """Wake waiting lanes, one for each of ``jobs`` jobs that may have been queued. Callable from any thread."""
         with self._news:
             self._calls += jobs
             self._news.notify(jobs)
