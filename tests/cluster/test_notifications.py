@@ -6,6 +6,7 @@ import pytest
 
 from service.jobs.cluster.listener import StoreListener
 from service.jobs.cluster.notifier import (
+    BUNDLE_S,
     CHANGES_CHANNEL,
     MAX_BUNDLE,
     WORK_CHANNEL,
