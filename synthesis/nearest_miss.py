@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from kinematics.message import compose
-from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
+from synthesis.model.answer import AnyNearestMiss, AnyResult, Check, Gap, Reachable, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.json_object import JsonObject
 from synthesis.model.kind import AnyKind, Progress, RatioCheck, scale_progress
@@ -121,7 +121,7 @@ class Relaxation(NamedTuple):
     """Result of relaxing a problem: designs that satisfy all constraints after all, or the nearest miss."""
 
     sound: Sequence[VerifiedDesign]
-    nearest_miss: NearestMiss[Any] | None
+    nearest_miss: AnyNearestMiss | None
 
 
 def find_nearest_miss(
@@ -171,7 +171,7 @@ def find_nearest_miss(
         return Relaxation([], None)
     nearest = _sort_misses(misses)[0]
     gaps = [Gap.from_check(check) for check in nearest.broken]
-    return Relaxation([], NearestMiss[Any](design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
+    return Relaxation([], AnyNearestMiss(design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
 
 
 def _sort_misses(misses: Iterable[_Miss[Design]]) -> list[_Miss[Design]]:

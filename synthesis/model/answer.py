@@ -111,6 +111,10 @@ class NearestMiss(Answer, Generic[Design]):
     reachable: Reachable
 
 
+AnyNearestMiss = NearestMiss[Any]
+"""Nearest miss of a problem of any kind; named here, because only what a module names can be pickled."""
+
+
 class Result(Answer, Generic[Design]):
     """The answer to a problem: designs, best first, and how they were found."""
 

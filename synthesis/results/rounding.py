@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.message import compose
-from synthesis.model.answer import AnyResult, Check, Gap, NearestMiss, Reachable, Verification
+from synthesis.model.answer import AnyNearestMiss, AnyResult, Check, Gap, Reachable, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage.answer import ExactDesign, FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkage.problem import LinkageProblem
@@ -196,7 +196,7 @@ def _mark_own_tolerances(held: RequiredTargets) -> NDArray[np.bool_] | None:
     return own if own.any() else None
 
 
-def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
+def _find_nearest_miss(missed: list[_RoundedDesign]) -> AnyNearestMiss | None:
     """Return the linkage on the grid that fails the fewest checks, and among equals the one with the smallest error."""
     known = [rounded.design for rounded in missed if rounded.design is not None]
     if not known:
@@ -206,4 +206,4 @@ def _find_nearest_miss(missed: list[_RoundedDesign]) -> NearestMiss[Any] | None:
         known, lambda design: len(design.verification.failures), lambda design: design.metrics.rms_residual
     )
     gaps = [Gap.from_check(check) for check in best.verification.failures]
-    return NearestMiss[Any](design=best, gaps=gaps, reachable=Reachable())
+    return AnyNearestMiss(design=best, gaps=gaps, reachable=Reachable())
