@@ -99,6 +99,7 @@ class GivenSkeleton(Statement):
         "stephenson_1",
         "stephenson_2",
         "stephenson_3",
+        "eightbar",
         "drag_link_rocker",
         "drag_link_slider",
         "davis",

@@ -31,10 +31,10 @@ model-stephenson-2-skipped =
 model-stephenson-2-without-class =
     grashof klassifiziert das Viergelenk O2 A B O4, das ein Stephenson-II-Sechsgelenk nicht hat
 model-sixbars-without-manufacture =
-    Sechsgelenke unterstützen `manufacture` nicht; dieses oder die Sechsgelenke weglassen
+    Getriebe mit mehr als vier Gliedern unterstützen `manufacture` nicht; dieses oder diese Getriebearten weglassen
 model-sixbars-without-zones =
-    diese Zonen gelten für die Seiten eines Viergelenks; für Sechsgelenke stattdessen constraints.{ $name }_region
-    angeben
+    diese Zonen gelten für die Seiten eines Viergelenks; für Getriebe mit mehr Gliedern stattdessen
+    constraints.{ $name }_region angeben
 
 # Targets and input motion of given linkages
 

@@ -25,9 +25,10 @@ model-sliding-input-without-torque = a force drives the sliding input, no torque
 model-sixbars-skipped = Sixbars were not searched: they do not support { $fields }.
 model-stephenson-2-skipped = Stephenson II sixbars were not searched: they do not support { $fields }.
 model-stephenson-2-without-class = classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have
-model-sixbars-without-manufacture = sixbars do not support `manufacture`; leave it or the sixbars out
+model-sixbars-without-manufacture =
+    linkages with more than four links do not support `manufacture`; leave it or these types out
 model-sixbars-without-zones =
-    these zones are for the sides of a fourbar; for sixbars give constraints.{ $name }_region instead
+    these zones are for the sides of a fourbar; for linkages with more links give constraints.{ $name }_region instead
 
 # Targets and input motion of given linkages
 

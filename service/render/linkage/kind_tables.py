@@ -81,6 +81,7 @@ TYPE_NAMES = {
     "dwell_watt_slider": "Watt II dwell sixbar with a slider",
     "dwell_stephenson_2": "Stephenson II dwell sixbar",
     "watt_1": "Watt I sixbar for parallel motion",
+    "eightbar": "Eightbar",
 }
 """Names of mechanism types on a sheet."""
 

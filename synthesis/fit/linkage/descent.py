@@ -38,7 +38,7 @@ from synthesis.numerics.portions import run_in_portions
 from synthesis.numerics.status import Status
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
-"""Weight of soft constraints, in the task's unit, and the tolerance of such descents."""
+"""Default weight of soft constraints, in the task's unit, and the tolerance of such descents."""
 
 INITIAL_WEIGHT, MAX_VIOLATION = 100.0, 1e-3
 """Weight of enforced constraints in the first descent, and their maximum violation at the end, in their own units; the
@@ -91,6 +91,8 @@ class FitTask:
         Data that these rows expect before the setting of :func:`~synthesis.fit.linkage.residuals.compute_linkage_rows`.
     prefix_margins : int
         Number of margins that they write before its margins.
+    soft_weight : float
+        Weight of soft constraints.
     """
 
     targets: Real
@@ -102,6 +104,7 @@ class FitTask:
     rows: Rows = compute_linkage_rows
     prefix: Real = field(default_factory=lambda: np.empty(0))
     prefix_margins: int = 0
+    soft_weight: float = SOFT_WEIGHT
 
     def pack_topology(self, topology: Topology) -> tuple[Real, Real]:
         """Return targets and setting for a topology."""
@@ -134,7 +137,7 @@ def descend_softly(
         targets, setting, limits, most = packed[id(fit.topology)]
         x, state = fit.x.copy(), np.concatenate([fit.inputs, np.zeros(limits)])
         multipliers = np.zeros(limits + 1)
-        multipliers[limits] = SOFT_WEIGHT
+        multipliers[limits] = task.soft_weight
         cost, _ = descend(task.rows, x, targets, setting, multipliers, state, most, steps, tolerance)
         return Fit(fit.topology, x, state[: len(fit.inputs)], cost)
 
@@ -206,16 +209,24 @@ def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
 
 
 def hop_basins(
-    fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator
-) -> list[Fit]:  # fmt: skip
-    """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first."""
+    fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator, halvings: int = 0
+) -> list[Fit]:
+    """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first.
+
+    A perturbation after which a linkage does not close is halved up to ``halvings`` times.
+    """
     pool = sort_fits(fits)
     if not pool:
         return pool
     parents = np.minimum(rng.exponential(HOP_RANK, hops).astype(np.int64), len(pool) - 1)
     sizes = HOP_SIZE * np.exp(HOP_SPREAD * rng.normal(size=hops))
-    children = [perturb_fit(pool[k], float(size), rng) for k, size in zip(parents, sizes, strict=True)]
-    for parent, child in zip(parents, descend_softly(children, task, steps), strict=True):
-        if child.cost < (1.0 - MIN_GAIN_SHARE) * pool[parent].cost:
-            pool[parent] = child
+    children, waiting = dict[int, Fit](), list(range(hops))
+    for _ in range(halvings + 1):
+        copies = [perturb_fit(pool[parents[k]], float(sizes[k]), rng) for k in waiting]
+        children |= zip(waiting, descend_softly(copies, task, steps), strict=True)
+        waiting = [k for k in waiting if not math.isfinite(children[k].cost)]
+        sizes *= 0.5
+    for k, parent in enumerate(parents):
+        if children[k].cost < (1.0 - MIN_GAIN_SHARE) * pool[parent].cost:
+            pool[parent] = children[k]
     return sort_fits(pool)

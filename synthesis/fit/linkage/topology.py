@@ -23,6 +23,7 @@ the joints as the ground sees them. It is driven by link 3, relative to the inpu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -204,6 +205,16 @@ SIXBAR_FORMS: dict[str, tuple[Topology, ...]] = {
 }
 """Topologies of sixbars whose traced point is on a link that is joined neither to the ground nor to the fourbar alone,
 or on any moving link of a Stephenson II."""
+
+EIGHTBAR_DYAD_COUNT = 3
+"""Number of dyads of an eightbar, with that of its first fourbar."""
+
+
+@cache
+def list_forms(kind: str) -> tuple[Topology, ...]:
+    """Return the topologies of a type of linkage: a sixbar of :data:`SIXBAR_FORMS`, or ``eightbar``."""
+    # Eightbars have 88 topologies, too many to name: the type stands for all of them.
+    return tuple(list_chains(EIGHTBAR_DYAD_COUNT)) if kind == "eightbar" else SIXBAR_FORMS[kind]
 
 
 def list_chains(dyad_count: int) -> list[Topology]:

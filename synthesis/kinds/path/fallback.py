@@ -26,7 +26,9 @@ MAX_FIT_MISS = 0.05
 Solve = Callable[[PathProblem, Progress], PathResult]
 
 
-def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve, fitted: Solve) -> PathResult:
+def solve_exactly_or_fit(
+    problem: PathProblem, progress: Progress, exact: Solve, fitted: Solve, type_name: str | None = None
+) -> PathResult:
     """Return the result of an exact search or, if it has no design that passes, that of least squares.
 
     Parameters
@@ -37,6 +39,8 @@ def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve,
         Receives the share of the work done.
     exact, fitted : callable
         The searches. The second is given the problem with the method ``least_squares``.
+    type_name : str, optional
+        Type of the linkages as a key of :data:`TYPE_NAMES`; that of the problem by default.
     """
     if problem.method != "auto":
         return exact(problem, progress)
@@ -66,7 +70,7 @@ def solve_exactly_or_fit(problem: PathProblem, progress: Progress, exact: Solve,
     # Only a complete search proves that no linkage exists.
     summary = compose(
         "path-none-exact-so-fitted" if first.search.complete else "path-none-exact-found-so-fitted",
-        type=compose(TYPE_NAMES["sixbar" if problem.sixbars else problem.mechanism]),
+        type=compose(TYPE_NAMES[type_name or problem.mechanism]),
         fits=second.summary,
         exact=first.summary,
     )

@@ -48,8 +48,10 @@ path-coupler-point-for-fourbars-only =
 path-slider-crank-with-output-pivot = eine Schubkurbel hat nur einen Gestellpunkt, den der Kurbel
 path-types-named-twice = mechanisms nennt bereits alle Getriebearten; dies weglassen
 path-types-without-gears = keine der verlangten Getriebearten hat Zahnräder
-path-not-for-sixbars = gilt nicht für Sechsgelenke; weglassen oder die Sechsgelenke aus mechanisms entfernen
-path-turning-sixbars-only = gesucht werden nur Sechsgelenke mit umlaufender Kurbel
+path-not-for-sixbars =
+    gilt nicht für Sechsgelenke und achtgliedrige Getriebe; weglassen oder diese aus mechanisms entfernen
+path-turning-sixbars-only =
+    gesucht werden nur Sechsgelenke und achtgliedrige Getriebe mit umlaufender Kurbel
 path-stance-not-for-stephenson =
     wird für Sechsgelenke nach Stephenson II nicht unterstützt; andere nennen oder weglassen
 
@@ -77,6 +79,8 @@ path-verified = geprüft
 path-linkages-verified = { $done } von { $all } Getrieben geprüft
 path-linkages-driven = { $done } von { $all } Getrieben durchgefahren
 path-real-linkages-verified = { $done } von { $all } reellen Getrieben geprüft
+path-linkages-perturbed = { $number } Getriebe verändert und neu angenähert
+path-eightbars-driven = { $done } von { $all } achtgliedrigen Getrieben durchgefahren
 path-sixbars-driven = { $done } von { $all } Sechsgelenken durchgefahren
 path-driving-linkages = Getriebe { $next } von { $all } wird durchgefahren
 path-following-paths = { $count } Pfade
@@ -101,6 +105,8 @@ path-linkages-fitted =
         [one] { $count } Getriebe angenähert
        *[other] { $count } Getriebe angenähert
     }
+path-eightbars-fitted =
+    Runde { $round }: { $compared } achtgliedrige Getriebe verglichen, { $fitted } angenähert
 path-sixbars-fitted = Runde { $round }: { $compared } Sechsgelenke verglichen, { $fitted } angenähert
 
 # Summaries of exact searches.
@@ -275,6 +281,14 @@ path-sixbars-passed =
         [one] erfüllt
        *[other] erfüllen
     } alle Bedingungen.
+path-eightbars-passed =
+    { $passed } von { $count ->
+        [one] { $count } angenäherten achtgliedrigen Getriebe
+       *[other] { $count } angenäherten achtgliedrigen Getrieben
+    } { $passed ->
+        [one] erfüllt
+       *[other] erfüllen
+    } alle Bedingungen.
 path-best-distance = Der mittlere Abstand (RMS) des besten beträgt { $rms_distance } { $unit }.
 path-best-sixbar-exact = Das beste Sechsgelenk ist ein { $type } mit P auf { $link }, das die Punkte trifft.
 path-best-sixbar =
@@ -282,6 +296,13 @@ path-best-sixbar =
     { $unit }.
 path-best-sixbar-both-ways =
     Das beste Sechsgelenk ist ein { $type } mit P auf { $link }; sein mittlerer Abstand (RMS) beträgt { $rms_distance }
+    { $unit }, in beiden Richtungen gemessen { $both_way_rms }.
+path-best-eightbar-exact = Das beste achtgliedrige Getriebe, mit P auf { $link }, trifft die Punkte.
+path-best-eightbar =
+    Das beste achtgliedrige Getriebe hat P auf { $link }; sein mittlerer Abstand (RMS) beträgt { $rms_distance }
+    { $unit }.
+path-best-eightbar-both-ways =
+    Das beste achtgliedrige Getriebe hat P auf { $link }; sein mittlerer Abstand (RMS) beträgt { $rms_distance }
     { $unit }, in beiden Richtungen gemessen { $both_way_rms }.
 path-only-other-passed =
     Kein gefundenes Getriebe der Art { $simple } erfüllt alle Bedingungen, wohl aber solche der Art { $other }.
@@ -306,6 +327,7 @@ path-fourbar = Viergelenk
 path-slider-crank = Schubkurbel
 path-geared-fivebar = Räderkoppel-Fünfgelenk
 path-sixbar = Sechsgelenk
+path-eightbar = achtgliedriges Getriebe
 path-type-or-type = { $first } oder { $last }
 path-sixbar-name =
     { $type ->

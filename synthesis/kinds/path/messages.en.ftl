@@ -39,8 +39,8 @@ path-coupler-point-for-fourbars-only = limits the place of P on a fourbar's coup
 path-slider-crank-with-output-pivot = a slider-crank has one fixed pivot, the crank's
 path-types-named-twice = mechanisms already names all types; leave this out
 path-types-without-gears = none of the requested mechanisms has gears
-path-not-for-sixbars = is not for sixbars; leave it out, or take the sixbars out of mechanisms
-path-turning-sixbars-only = only sixbars whose crank turns through are searched
+path-not-for-sixbars = is not for sixbars and eightbars; leave it out, or take them out of mechanisms
+path-turning-sixbars-only = only sixbars and eightbars whose crank turns through are searched
 path-stance-not-for-stephenson = is not supported for Stephenson II sixbars; name others, or leave it out
 
 # Errors in a stance.
@@ -67,6 +67,8 @@ path-verified = verified
 path-linkages-verified = { $done } of { $all } linkages verified
 path-linkages-driven = { $done } of { $all } linkages driven
 path-real-linkages-verified = { $done } of { $all } real linkages verified
+path-linkages-perturbed = { $number } linkages perturbed and fitted again
+path-eightbars-driven = { $done } of { $all } eightbars driven
 path-sixbars-driven = { $done } of { $all } sixbars driven
 path-driving-linkages = driving linkage { $next } of { $all }
 path-following-paths = { $count } paths
@@ -91,6 +93,7 @@ path-linkages-fitted =
         [one] { $count } linkage fitted
        *[other] { $count } linkages fitted
     }
+path-eightbars-fitted = Round { $round }: { $compared } eightbars compared, { $fitted } fitted
 path-sixbars-fitted = Round { $round }: { $compared } sixbars compared, { $fitted } fitted
 
 # Summaries of exact searches.
@@ -257,12 +260,24 @@ path-sixbars-passed =
         [one] satisfies
        *[other] satisfy
     } all constraints.
+path-eightbars-passed =
+    { $passed } of { $count ->
+        [one] { $count } eightbar that was
+       *[other] { $count } eightbars that were
+    } fitted { $passed ->
+        [one] satisfies
+       *[other] satisfy
+    } all constraints.
 path-best-distance = The best one's rms distance is { $rms_distance } { $unit }.
 path-best-sixbar-exact = The best sixbar is a { $type } with P on { $link }, which meets the points.
 path-best-sixbar = The best sixbar is a { $type } with P on { $link }; its rms distance is { $rms_distance } { $unit }.
 path-best-sixbar-both-ways =
     The best sixbar is a { $type } with P on { $link }; its rms distance is { $rms_distance } { $unit },
     { $both_way_rms } both ways.
+path-best-eightbar-exact = The best eightbar, with P on { $link }, meets the points.
+path-best-eightbar = The best eightbar has P on { $link }; its rms distance is { $rms_distance } { $unit }.
+path-best-eightbar-both-ways =
+    The best eightbar has P on { $link }; its rms distance is { $rms_distance } { $unit }, { $both_way_rms } both ways.
 path-only-other-passed = No { $simple } was found that satisfies all constraints; { $other }s do.
 path-neither-passed = No { $simple } was found that satisfies all constraints; nor was a { $other }.
 
@@ -280,6 +295,7 @@ path-fourbar = fourbar
 path-slider-crank = slider-crank
 path-geared-fivebar = geared fivebar
 path-sixbar = sixbar
+path-eightbar = eightbar
 path-type-or-type = { $first } or { $last }
 path-sixbar-name =
     { $type ->

@@ -234,8 +234,8 @@ class PathProblem(LinkageProblem):
     )
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="The types of linkages to search, in place of mechanism; auto: fourbars, and sixbars if no "
-        "fourbar is sound and near.",
+        description="The types of linkages to search, in place of mechanism; auto: fourbars, sixbars if no fourbar is "
+        "sound and near, and eightbars if sixbars are far off, too.",
     )
     stance: Stance | None = Field(
         default=None,
@@ -250,7 +250,7 @@ class PathProblem(LinkageProblem):
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
         default=3,
         description="For fourbars and fewer than nine points of free timing: number of random samples of linkages near "
-        "them. Other types, including sixbars, are sampled once and ignore this field.",
+        "them. Other types, including sixbars and eightbars, are sampled once and ignore this field.",
     )
 
     @property
@@ -265,6 +265,14 @@ class PathProblem(LinkageProblem):
         if self.mechanisms == "auto":
             return tuple(name for name in named if name != UNCLASSED_SIXBAR)
         return remove_unclassed(named, find_unsupported_unclassed(self))
+
+    @property
+    def has_eightbars(self) -> bool:
+        """Whether eightbars are searched; ``auto`` searches them only if sixbars are far off."""
+        searched: tuple[Literal["eightbar"], ...] = select_searched_sixbars(
+            self.mechanisms, ("eightbar",), find_unsupported(self)
+        )
+        return bool(searched)
 
     def select_type(self, name: Simple) -> PathProblem:
         """Return the problem for one type with a single closure, as requested without ``mechanisms``."""

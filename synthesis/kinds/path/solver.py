@@ -18,10 +18,10 @@ from synthesis.kinds.path.exact.nine_point_solver import POINT_COUNT, solve_nine
 from synthesis.kinds.path.exact.nine_point_solver import warm_up as warm_up_nine_points
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.least_squares import fit_points
+from synthesis.kinds.path.multiloop import solver as sixbar_solver
 from synthesis.kinds.path.points.fit import warm_up as warm_up_fits
 from synthesis.kinds.path.points.workspace_starts import is_workspace_constrained
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar import solver as sixbar_solver
 from synthesis.kinds.path.slider_cranks_and_fivebars import solve_other_linkages
 from synthesis.kinds.path.type_selection import solve_types
 from synthesis.kinds.path.verification.cognates import add_cognates

@@ -1,6 +1,7 @@
 """Selection of the linkage type that guides the point: the simplest sound and near one, followed by better ones.
 
-Simpler types are searched first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
+Simpler types are searched first: fourbars, slider-cranks, geared fivebars, all sixbars together, then eightbars. With
+``auto`` eightbars are searched only if the best sixbar is farther off than :data:`MAX_SIXBAR_ERROR`. A linkage that
 satisfies all constraints is the only answer if it transmits force well enough
 (:func:`~synthesis.results.simplest_type.has_good_transmission`) and is near: its error is at most
 :data:`MAX_NEAR_ERROR` of the task's size, or within the given tolerances. Otherwise the next types are searched. They
@@ -9,16 +10,17 @@ are listed next to it if their error is at most :data:`ERROR_RATIO` of its minim
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Literal
 
 from kinematics.message import compose, join_messages
 from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.multiloop.solver import describe_best_linkages, solve_eightbars, solve_sixbars
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.results import join_sentences
-from synthesis.kinds.path.sixbar.solver import describe_best_sixbar, solve_sixbars
 from synthesis.kinds.path.statement.mechanism_types import (
-    SIXBAR_TYPES,
+    MULTILOOP_TYPES,
     TYPE_NAMES,
     Simple,
     find_unsupported,
@@ -42,6 +44,10 @@ Solve = Callable[[PathProblem, Progress], PathResult]
 MAX_NEAR_ERROR = 1e-3
 """Error, as a share of the task's size, below which no more complex type is searched."""
 
+MAX_SIXBAR_ERROR = 0.03
+"""Error of the best sixbar, as a share of the task's size, below which ``auto`` searches no eightbars: two more links
+must pay for themselves, and a client can ask for them."""
+
 
 def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
     """Solve a problem for each of the types that it names, simplest first, and combine the results.
@@ -55,14 +61,21 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     progress : callable
         Receives the share of the work done.
     """
-    stages: list[Simple | Literal["sixbar"]] = [*list_simple_types(problem.mechanisms)]
+    stages: list[Simple | Literal["sixbar", "eightbar"]] = [*list_simple_types(problem.mechanisms)]
     if problem.sixbars:
         stages.append("sixbar")
+    if problem.has_eightbars:
+        stages.append("eightbar")
     result: PathResult | None = None
     before: list[str] = []
     for n, name in enumerate(stages):
         part = scale_progress(progress, n / len(stages), (n + 1) / len(stages))
-        found = solve_sixbars(problem, part) if name == "sixbar" else of_one(problem.select_type(name), part)
+        if name == "eightbar":
+            if result is not None and problem.mechanisms == "auto" and not _is_far(problem, result):
+                break
+            found = solve_eightbars(problem, part)
+        else:
+            found = solve_sixbars(problem, part) if name == "sixbar" else of_one(problem.select_type(name), part)
         result = found if result is None else combine_results(problem, result, found, before, name)
         before.append(name)
         # A sound and accurate simple linkage ends the search: designers prefer fewer links.
@@ -71,11 +84,11 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     assert result is not None
     sentences = [result.summary]
     if not problem.is_listed_later:
-        sentences.append(describe_best_sixbar(problem, result.designs))
+        sentences.append(describe_best_linkages(problem, result.designs))
     if problem.mechanisms == "auto" and not problem.sixbars:
         sentences.append(describe_skipped_sixbars(find_unsupported(problem)))
     elif problem.mechanisms != "auto":
-        named = select_searched_sixbars(problem.mechanisms, SIXBAR_TYPES, find_unsupported(problem))
+        named = select_searched_sixbars(problem.mechanisms, MULTILOOP_TYPES, find_unsupported(problem))
         sentences.append(describe_unclassed(named, find_unsupported_unclassed(problem)))
     return result.model_copy(update={"summary": join_sentences(sentences)})
 
@@ -84,6 +97,12 @@ def _is_sufficient(problem: PathProblem, design: PathDesign) -> bool:
     """Return whether a linkage that satisfies all constraints is sound and near enough to end the search."""
     near = problem.tolerances is not None or compute_error(design, problem) <= MAX_NEAR_ERROR * problem.task_size
     return near and has_good_transmission(problem, design)
+
+
+def _is_far(problem: PathProblem, result: PathResult) -> bool:
+    """Return whether no linkage that satisfies all constraints is near the target."""
+    errors = [compute_error(design, problem) for design in select_passing(result.designs)]
+    return min(errors, default=math.inf) > MAX_SIXBAR_ERROR * problem.task_size
 
 
 def combine_results(

@@ -185,7 +185,26 @@ class GearedFivebarMechanism(Answer):
     skeleton: Skeleton
 
 
-class SixbarMechanism(Answer):
+class MultiloopMechanism(Answer):
+    """A linkage of several loops, which only its skeleton describes completely."""
+
+    type: str
+    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6, O8.")
+    links: dict[str, Length] = Field(
+        description="The length of each link between its first two pins, by its name; for further pins also their "
+        "distances from the first and from the second, by names ending in _arm and _side, or _arm_2 and _side_2."
+    )
+    reference_body_angle: Angle | None = _BODY_ANGLE_FIELD
+    skeleton: Skeleton
+
+
+class EightbarMechanism(MultiloopMechanism):
+    """An eightbar: a fourbar O2 A B O4 and two dyads, each of them on two earlier links or on the ground."""
+
+    type: Literal["eightbar"] = "eightbar"
+
+
+class SixbarMechanism(MultiloopMechanism):
     """A sixbar of Watt's or Stephenson's chain, described by its skeleton.
 
     It is one of three designs. First, a fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the
@@ -204,12 +223,15 @@ class SixbarMechanism(Answer):
         "of each link between its first two pins, by its name; for links with three pins also their distances from the "
         "third, by names ending in _arm and _side."
     )
-    reference_body_angle: Angle | None = _BODY_ANGLE_FIELD
-    skeleton: Skeleton
 
 
 LinkageMechanism = Annotated[
-    FourbarMechanism | SliderCrankMechanism | InvertedSliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism,
+    FourbarMechanism
+    | SliderCrankMechanism
+    | InvertedSliderCrankMechanism
+    | GearedFivebarMechanism
+    | SixbarMechanism
+    | EightbarMechanism,
     Discriminator("type"),
 ]
 """Any linkage that an answer may contain, identified by its field ``type``."""

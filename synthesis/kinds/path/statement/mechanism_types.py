@@ -31,7 +31,12 @@ Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 
 SIXBAR_TYPES: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=7)]
+Multiloop = Sixbar | Literal["eightbar"]
+"""Linkages of several loops; an eightbar has any of 88 topologies."""
+
+MULTILOOP_TYPES: tuple[Multiloop, ...] = (*SIXBAR_TYPES, "eightbar")
+
+Mechanisms = Auto | Annotated[list[Simple | Multiloop], Field(min_length=1, max_length=8)]
 """Types by their names, or ``auto`` for the simplest suitable one."""
 
 TYPE_NAMES = {
@@ -39,14 +44,15 @@ TYPE_NAMES = {
     "slider_crank": "path-slider-crank",
     "geared_fivebar": "path-geared-fivebar",
     "sixbar": "path-sixbar",
+    "eightbar": "path-eightbar",
 }
 """Messages with the names of the types; sixbars share one."""
 
 TURNING_CLASSES = ("any", "crank_rocker", "double_crank")
-"""Classes of fourbars within sixbars: their crank turns through."""
+"""Classes of fourbars within sixbars and eightbars: their crank turns through."""
 
 
-def list_simple_types(requested: Auto | Sequence[Simple | Sixbar] | None) -> tuple[Simple, ...]:
+def list_simple_types(requested: Auto | Sequence[Simple | Multiloop] | None) -> tuple[Simple, ...]:
     """Return the requested types with one closure, the simplest first; only fourbars for ``auto``."""
     return ("fourbar",) if requested == "auto" else select_requested_types(requested, SIMPLE_TYPES)
 
@@ -60,16 +66,16 @@ def find_mechanism_contradictions(problem: PathProblem) -> list[Contradiction]:
         listed.append(Contradiction("/mechanism", compose("path-types-named-twice")))
     if problem.gear_ratio is not None and "geared_fivebar" not in list_simple_types(stated):
         listed.append(Contradiction("/gear_ratio", compose("path-types-without-gears")))
-    listed += find_sixbar_contradictions(stated, SIXBAR_TYPES, find_unsupported(problem))
+    listed += find_sixbar_contradictions(stated, MULTILOOP_TYPES, find_unsupported(problem))
     return listed + (
         list(find_unsupported_unclassed(problem))
-        if select_requested_types(stated, SIXBAR_TYPES) == (UNCLASSED_SIXBAR,)
+        if select_requested_types(stated, MULTILOOP_TYPES) == (UNCLASSED_SIXBAR,)
         else []
     )
 
 
 def find_unsupported(problem: PathProblem) -> Iterator[Contradiction]:
-    """Yield requests that sixbars do not support: those for fourbars alone, and others not implemented for them."""
+    """Yield requests that sixbars and eightbars do not support: those for fourbars alone, and those not implemented."""
     limits = problem.constraints
     for path, of_fourbars in (
         ("/timing", problem.prescribed),

@@ -38,7 +38,7 @@ from synthesis.kinds.path.verification.passages import (
 from synthesis.kinds.path.verification.stance import check_stance, measure_stance
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.linkage.answer import FourbarMechanism, LinkageMechanism, SixbarMechanism, Target
+from synthesis.model.linkage.answer import FourbarMechanism, LinkageMechanism, MultiloopMechanism, Target
 from synthesis.model.linkage.conversion import DrivenFourbar, build_driven_fourbar
 from synthesis.verification.checks import CHOICE_TOLERANCE, check_error, check_maximum, check_targets_reached
 from synthesis.verification.constraints import check_constraints
@@ -170,12 +170,12 @@ def build_path_design(
     """Check a linkage of any type against all constraints and build its design; ``own`` are checks of its type."""
     residuals = at.misses / problem.task_size
     gone: dict[str, float] = {}
-    of_sixbar = isinstance(mechanism, SixbarMechanism)
+    is_multiloop = isinstance(mechanism, MultiloopMechanism)
     if problem.is_fitted:
         points = np.array([point.point for point in problem.points])
         gone = measure_excursion(*way, points, problem.closed, float(at.misses.max()))._asdict()
         # Only a dense polyline defines the curve well enough for the reverse distance.
-        if of_sixbar and len(points) >= MIN_POLYLINE_POINTS:
+        if is_multiloop and len(points) >= MIN_POLYLINE_POINTS:
             gone["both_way_rms"] = compute_two_way_rms(*way, points, problem.closed, at.misses)
         checks = _check_tolerances(problem, at, way, points)
         stance = measure_stance(problem, way.place, way.used, np.radians(at.inputs))
@@ -193,7 +193,7 @@ def build_path_design(
             for k, (angle, residual, miss) in enumerate(zip(at.inputs, residuals, at.misses, strict=True))
         ],
         verification=Verification.from_checks([*checks, *own]),
-        point_link=next(link.name for link in mechanism.skeleton.links if "P" in link.joints) if of_sixbar else None,
+        point_link=next(link.name for link in mechanism.skeleton.links if "P" in link.joints) if is_multiloop else None,
         metrics=PathMetrics(
             input_rotation=float(at.inputs[-1] - at.inputs[0]),
             rms_residual=math.sqrt(float(np.mean(residuals**2))),

@@ -1,4 +1,4 @@
-"""Verify slider-cranks, geared fivebars and sixbars that guide a point: drive and measure them.
+"""Verify slider-cranks, geared fivebars, sixbars and eightbars that guide a point: drive and measure them.
 
 They are driven through their closures. The analysis core finds the branches by root finding. On the reference's branch
 the input is searched at which P comes nearest to each point, in order, within one cycle: a turn of the crank, or as
@@ -19,7 +19,13 @@ from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification.fourbar import AtPoints, TracedPath, build_path_design
 from synthesis.kinds.path.verification.passages import find_ordered_run
-from synthesis.model.linkage.answer import GearedFivebarMechanism, SixbarMechanism, SliderCrankMechanism
+from synthesis.model.linkage.answer import (
+    EightbarMechanism,
+    GearedFivebarMechanism,
+    MultiloopMechanism,
+    SixbarMechanism,
+    SliderCrankMechanism,
+)
 from synthesis.verification.branch_drive import MechanismOnBranch
 from synthesis.verification.measures import (
     classify_inner_fourbar,
@@ -32,19 +38,19 @@ from synthesis.verification.reconstruction import rebuild_mechanism
 from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from synthesis.verification.workspace import BODY_POINT
 
-TracedMechanism = SliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism
+TracedMechanism = SliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism | EightbarMechanism
 """Mechanisms that are driven through their closures."""
 
 
 def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign | None:
-    """Drive a slider-crank, geared fivebar or sixbar past a problem's points and measure it.
+    """Drive a linkage other than a fourbar past a problem's points and measure it.
 
     Parameters
     ----------
     problem : PathProblem
         The problem.
-    design : SliderCrankMechanism, GearedFivebarMechanism or SixbarMechanism
-        Only the dimensions are used, not the skeleton, except for a sixbar, which has no other dimensions.
+    design : SliderCrankMechanism, GearedFivebarMechanism, SixbarMechanism or EightbarMechanism
+        Only the dimensions are used, not the skeleton, except for sixbars and eightbars, which have no others.
 
     Returns
     -------
@@ -83,7 +89,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
         problem.task_size,
         find_min_transmission_angles(driven.evaluate_motion, np.linspace(*used, GRID_SIZE)),
         np.concatenate(list(joints.values())),
-        barker=classify_inner_fourbar(mechanism) if isinstance(design, SixbarMechanism) else None,
+        barker=classify_inner_fourbar(mechanism) if isinstance(design, MultiloopMechanism) else None,
         same_branch=True,
         visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,

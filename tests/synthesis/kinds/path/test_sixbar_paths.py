@@ -1,4 +1,4 @@
-"""Sixbars that guide a point, without the service: what is held of a room and of limits."""
+"""Sixbars and eightbars that guide a point, without the service: constraints, closure, and the choice of types."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ import pytest
 
 from kinematics.linkage.planar.drive import drive
 from synthesis.fit.linkage.setting import INPUT_BOX, PIVOT_BOX, WORKSPACE_BOX
-from synthesis.fit.linkage.topology import SIXBAR_FORMS
+from synthesis.fit.linkage.topology import SIXBAR_FORMS, list_forms
+from synthesis.kinds.path import type_selection
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
+from synthesis.kinds.path.multiloop.limits import WORKSPACE_MARGIN, build_packer
+from synthesis.kinds.path.multiloop.mechanism import build_fitted_linkage
+from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar.limits import WORKSPACE_MARGIN, build_packer
-from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
-from synthesis.kinds.path.sixbar.shape_matching import find_similar_linkages
 from synthesis.kinds.path.task.ranking import build_ordering
 from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
 from synthesis.verification.reconstruction import rebuild_mechanism
+from tests.oracles.loops import Loops
+from tests.support.answers import solve
 from tests.support.synthesis.random_linkages import trace_nodes
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
@@ -64,15 +67,16 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
 
 
 FORMS = [(kind, n) for kind, forms in SIXBAR_FORMS.items() for n in range(len(forms))]
+FORMS += [("eightbar", n) for n in (0, 29, 61, 87)]
 CIRCLE = np.exp(2j * np.pi * np.arange(48) / 48)
 
 
 @pytest.mark.parametrize(("kind", "n"), FORMS)
 def test_the_core_drives_the_same_curve_once_around(kind, n):
     """The analysis core closes loops by root finding; the engine intersects circles from the input outwards."""
-    topology = SIXBAR_FORMS[kind][n]
+    topology = list_forms(kind)[n]
     fit = find_similar_linkages(topology, CIRCLE.real + 0.6j * CIRCLE.imag, True, 1024, 1, np.random.default_rng(0))[0]
-    sixbar = build_fitted_sixbar(kind, fit, 3.0 - 2.0j, 7.0)
+    sixbar = build_fitted_linkage(kind, fit, 3.0 - 2.0j, 7.0)
     mechanism = rebuild_mechanism(sixbar)
     inputs = 2.0 * np.pi * np.arange(2000) / 2000
     motion = drive(mechanism, float(mechanism.reference_input) + inputs, order=0)
@@ -83,17 +87,18 @@ def test_the_core_drives_the_same_curve_once_around(kind, n):
     assert gaps.max() < 0.05
     assert abs(motion.joints["P"][0][0] - expected[0]) < 1e-9
     assert sixbar.type == kind
-    assert set(motion.sines) == ({"link_3", "link_5", "output"} if topology.triad else {"coupler", "link_5"})
+    driven = {"coupler", "link_5", "link_7"} if kind == "eightbar" else {"coupler", "link_5"}
+    assert set(motion.sines) == ({"link_3", "link_5", "output"} if topology.triad else driven)
     assert min(np.abs(sines).min() for sines in motion.sines.values()) > math.sin(math.radians(14.0))
     body = next(link for link in sixbar.skeleton.links if "P" in link.joints)
     assert body.name == topology.body
-    assert not {"O2", "O4", "O6"} & set(body.joints)
+    assert not {"O2", "O4", "O6", "O8"} & set(body.joints)
 
 
 def test_rounds_say_of_which_types_they_are():
     told = PathProblem.model_json_schema()["properties"]["rounds"]["description"]
     assert "For fourbars" in told
-    assert "including sixbars, are sampled once and ignore this field" in told
+    assert "including sixbars and eightbars, are sampled once and ignore this field" in told
 
 
 def as_of(error: float | None, quality: float, *, passed: bool = True) -> SimpleNamespace:
@@ -121,14 +126,15 @@ def test_what_meets_the_points_stands_before_what_is_fitted_to_them_in_every_ord
 
 
 @pytest.mark.parametrize(
-    ("more", "complete", "told"),
+    ("more", "type_name", "complete", "told"),
     [
-        ({"mechanism": "slider_crank"}, False, "No slider-crank was found that meets the points exactly"),
-        ({}, True, "No fourbar meets the points exactly"),
-        ({"mechanisms": ["fourbar", "watt_1"]}, False, "No sixbar was found that meets the points exactly"),
+        ({"mechanism": "slider_crank"}, None, False, "No slider-crank was found that meets the points exactly"),
+        ({}, None, True, "No fourbar meets the points exactly"),
+        ({"mechanisms": ["fourbar", "watt_1"]}, "sixbar", False, "No sixbar was found that meets the points exactly"),
+        ({"mechanisms": ["eightbar"]}, "eightbar", False, "No eightbar was found that meets the points exactly"),
     ],
 )
-def test_of_which_type_none_meets_the_points_is_told_before_it_is_fitted(more, complete, told):
+def test_the_summary_names_the_type_that_does_not_meet_the_points_exactly(more, type_name, complete, told):
     problem = parse_problem({"kind": "path", "points": TASK["points"][:6], **more})
 
     def answer(count: int) -> PathResult:
@@ -136,5 +142,68 @@ def test_of_which_type_none_meets_the_points_is_told_before_it_is_fitted(more, c
         search = Search(method="a", complete=complete, candidates=1, accepted=count, rejected={}, seed=0)
         return PathResult.model_construct(designs=[design] * count, search=search, summary="")
 
-    found = solve_exactly_or_fit(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1))
+    found = solve_exactly_or_fit(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1), type_name)
     assert found.summary.startswith(f"{told} and satisfies all constraints; the points are fitted instead.")
+
+
+@pytest.mark.parametrize(
+    ("mechanisms", "sixbar_error", "searched"),
+    [
+        ("auto", 0.02, ["fourbar", "sixbar"]),
+        ("auto", 0.04, ["fourbar", "sixbar", "eightbar"]),
+        (["fourbar", "eightbar"], 0.02, ["fourbar", "eightbar"]),
+        (["stephenson_3", "eightbar"], 0.02, ["sixbar", "eightbar"]),
+    ],
+)
+def test_auto_searches_eightbars_only_if_sixbars_are_far_off(monkeypatch, mechanisms, sixbar_error, searched):
+    problem = parse_problem(TASK | {"mechanisms": mechanisms})
+    called: list[str] = []
+
+    def build_solver(name: str, share: float):
+        def solve(_problem, _progress) -> PathResult:
+            called.append(name)
+            design = as_of(share * problem.task_size, 0.5)
+            search = Search(method="a", complete=False, candidates=1, accepted=1, rejected={}, seed=0)
+            return PathResult.model_construct(designs=[design], search=search, summary="")
+
+        return solve
+
+    monkeypatch.setattr(type_selection, "solve_sixbars", build_solver("sixbar", sixbar_error))
+    monkeypatch.setattr(type_selection, "solve_eightbars", build_solver("eightbar", 0.01))
+    monkeypatch.setattr(type_selection, "combine_results", lambda _problem, _simple, found, _before, _name: found)
+    monkeypatch.setattr(type_selection, "describe_best_linkages", lambda _problem, _designs: "")
+    type_selection.solve_types(problem, build_solver("fourbar", 0.2), lambda *_: None)
+    assert called == searched
+
+
+# A letter M, drawn from its left foot to its right one, whose inner strokes meet halfway down.
+LETTER_M = np.concatenate(
+    [
+        start + (end - start) * np.linspace(0.0, 1.0, 12, endpoint=False)
+        for start, end in itertools.pairwise([0j, 100j, 40.0 + 40j, 80.0 + 100j, 80.0 + 0j])
+    ]
+)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too():
+    """Fits to the points of a stroke alone used to leave it by its own size between two of them."""
+    problem = parse_problem(
+        TASK
+        | {"points": listed(LETTER_M), "closed": False, "mechanisms": ["eightbar"], "constraints": {}, "max_designs": 2}
+    )
+    designs = solve(problem).designs
+    assert designs
+    for design in designs:
+        turn = np.radians([target.input_angle for target in design.targets])
+        followed = Loops(design.mechanism.skeleton.model_dump(mode="json")).followed(
+            np.linspace(0.0, turn[-1] - turn[0], 400)
+        )
+        assert followed.branch > 0.0
+        sides = np.diff(LETTER_M)
+        gaps = followed.points[:, None] - LETTER_M[:-1]
+        share = np.clip((gaps * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
+        strays = np.abs(gaps - share * sides).min(axis=1)
+        assert strays.max() < 0.05 * problem.task_size
+        assert strays.max() <= 2.0 * design.metrics.max_distance + 1e-6 * problem.task_size

@@ -20,6 +20,8 @@ from synthesis.fit.linkage.margins import count_margins
 from synthesis.fit.linkage.residuals import FIRST_NODE, count_rows
 from synthesis.fit.linkage.setting import STEPS
 from synthesis.fit.linkage.topology import SIXBAR_FORMS
+from synthesis.kinds.path.multiloop.limits import build_packer
+from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.constraint_vector import count_setting_margins
 from synthesis.kinds.path.residuals.curve_constraints import pack_curve_setting
@@ -39,8 +41,6 @@ from synthesis.kinds.path.residuals.stance import (
     compute_linkage_stance_rows,
     compute_simple_stance_rows,
 )
-from synthesis.kinds.path.sixbar.limits import build_packer
-from synthesis.kinds.path.sixbar.shape_matching import find_similar_linkages
 from synthesis.kinds.path.verification.fourbar import verify_path
 from synthesis.kinds.path.verification.stance import measure_stance
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar

@@ -1,15 +1,16 @@
-"""Sixbars that guide a point along a curve or past points: shapes compared, the most similar fitted, the best driven.
+"""Sixbars and eightbars that guide a point: shapes compared, the most similar fitted, the best driven.
 
-A round, for all topologies of the requested types (:data:`~synthesis.fit.linkage.topology.SIXBAR_FORMS`) together:
+A round, for all topologies of the requested types (:func:`~synthesis.fit.linkage.topology.list_forms`) together:
 
 1. linkages are drawn and their curves compared with the target; the most similar are placed on it;
 2. they descend on all of their dimensions at equal steps along the target, with the constraints as penalties;
 3. the best of all rounds are fitted to the points themselves and hop from basin to basin.
 
-Rounds end when a fit is at the points, or after :data:`MAX_ROUNDS`. The best are then fitted to the points, and to the
-curve between them if the points define it, with all constraints enforced. :mod:`synthesis.fit.linkage.margins` lists
-the constraints known to the kernels; all constraints are verified on the driven sixbar. If no transmission angle is
-required, at least :data:`~synthesis.results.simplest_type.SOUND_TRANSMISSION_ANGLE` degrees are the aim.
+Rounds end when a fit is at the points, or after :attr:`Family.max_rounds`; eightbars that are not at the points then
+hop on towards the points in any order. The best are fitted to the points, and to the curve between them if the points
+define it, with all constraints enforced. :mod:`synthesis.fit.linkage.margins` lists the constraints known to the
+kernels; all constraints are verified on the driven linkage. If no transmission angle is required, at least
+:data:`~synthesis.results.simplest_type.SOUND_TRANSMISSION_ANGLE` degrees are the aim.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,17 +36,17 @@ from synthesis.fit.linkage.descent import (
     sort_fits,
 )
 from synthesis.fit.linkage.residuals import ROOT
-from synthesis.fit.linkage.topology import SIXBAR_FORMS, Topology
+from synthesis.fit.linkage.topology import Topology, list_forms
 from synthesis.kinds.path.curve.fits import get_thinning
 from synthesis.kinds.path.curve.stance_fit import pack_target_stance
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
+from synthesis.kinds.path.multiloop.limits import CLASS_LINKS, build_packer
+from synthesis.kinds.path.multiloop.mechanism import build_fitted_linkage
+from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.stance import MARGIN_COUNT, compute_linkage_stance_rows
 from synthesis.kinds.path.results import join_sentences
-from synthesis.kinds.path.sixbar.limits import CLASS_LINKS, build_packer
-from synthesis.kinds.path.sixbar.mechanism import build_fitted_sixbar
-from synthesis.kinds.path.sixbar.shape_matching import find_similar_linkages
 from synthesis.kinds.path.task.ranking import (
     EQUAL_ERROR_RATIO,
     FAR_REASON,
@@ -64,15 +66,11 @@ from synthesis.kinds.path.task.target_curve import (
 )
 from synthesis.kinds.path.verification.linkage import verify_traced
 from synthesis.model.kind import Progress, scale_progress
-from synthesis.model.linkage.answer import SixbarMechanism
+from synthesis.model.linkage.answer import EightbarMechanism, SixbarMechanism
 from synthesis.model.linkage.conversion import to_complex
 from synthesis.results.candidate_log import CandidateLog, report_candidates
 from synthesis.results.ranking import select_distinct
 from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE, select_passing
-
-MAX_ROUNDS, DRAW_COUNT, START_COUNT = 6, 24576, 120
-"""Maximum number of rounds; number of linkages drawn in a round, and of the most similar that are fitted, over all
-topologies."""
 
 OPEN_DRAW_SHARE = 0.25
 """Share of the drawn number for a stroke, which is compared with parts of each curve."""
@@ -83,13 +81,26 @@ MAX_START_STEPS, MAX_HOP_STEPS = 40, 50
 POOL_SIZE, HOP_COUNT, GENERATION_COUNT = 24, 24, 8
 """Number of fits that are kept; of perturbed copies in a generation; and of generations in a round."""
 
+MAX_FREE_STARTS, MIN_POOL_SIZE = 120, 3
+"""Maximum number of fits from which those in any order start; number of fits that are pursued at the end."""
+
+ORDERED_PROGRESS, FREE_PROGRESS = 0.5, 0.8
+"""Progress after fits to the points in order, and after those in any order, which may be left out."""
+
+FREE_SOFT_WEIGHT = 300.0
+"""Weight of soft constraints in fits in any order: mean distances are larger numbers than their squares."""
+
+FREE_WIDTH = 1e-3
+"""Distance, in task sizes, below which fits in any order minimize squares instead of distances, so that derivatives are
+continuous."""
+
 FOUND_ERROR = 2e-4
 """Root mean square distance from the points, as a share of the target's size, at which a fit is at them and the search
 ends: a better one could not be manufactured."""
 
 MIN_FOUND, MIN_FOUND_CONSTRAINED = 4, 16
 """Number of fits at the points that end the search, a choice for the ranking; and the same if some constraints are
-checked on the driven sixbar only."""
+checked on the driven linkage only."""
 
 RAISED_ANGLES, MAX_RAISING_ROUNDS = (30.0, 40.0, 50.0), 4
 """Transmission angles, degrees, that good fits are raised to as far as their error permits, and the number of rounds of
@@ -97,7 +108,7 @@ such fits."""
 
 MAX_FITTED, MAX_FITTED_CONSTRAINED = 12, 24
 """Number of fits that are refitted under all constraints and driven; and the same if a workspace, planes or forces are
-constrained, which are checked on the driven sixbar only. More if more designs are requested."""
+constrained, which are checked on the driven linkage only. More if more designs are requested."""
 
 BACK_STEP_COUNT, ANGLE_STEP_COUNT, SOFT_STEP_COUNT = 96, 96, 48
 """Numbers of steps of the input at which the curve is compared with the polyline through many points, at which the
@@ -113,14 +124,93 @@ EXACT_COST = 1e-20
 """Half the sum of squares, in the target's unit, below which points are met exactly up to rounding."""
 
 DESIGN_DUPLICATE_TOLERANCE = 1e-3
-"""Sixbars whose joints agree to this share of the task's size are duplicates."""
+"""Linkages whose joints agree to this share of the task's size are duplicates."""
+
+
+class Family(NamedTuple):
+    """Linkages of one number of links, which are searched together.
+
+    Attributes
+    ----------
+    name : str
+        Name of the family in messages and in :data:`TYPE_NAMES`.
+    max_rounds : int
+        Maximum number of rounds.
+    draw_count, start_count : int
+        Number of linkages drawn in a round, and of the most similar that are fitted, over all topologies.
+    method : str
+        Name of the search in answers.
+    halvings : int
+        Number of times that a perturbation after which a linkage does not close is halved.
+    free_generation_count : int
+        Number of generations of hops that approach the points in any order, if no fit is at them before.
+    fitted, driven, passed : str
+        Messages of progress, and of the number of linkages that passed.
+    """
+
+    name: str
+    max_rounds: int
+    draw_count: int
+    start_count: int
+    method: str
+    halvings: int
+    free_generation_count: int
+    fitted: str
+    driven: str
+    passed: str
+
+
+SIXBARS = Family(
+    name="sixbar",
+    max_rounds=6,
+    draw_count=24576,
+    start_count=120,
+    method="sixbar_shapes",
+    halvings=0,
+    free_generation_count=0,
+    fitted="path-sixbars-fitted",
+    driven="path-sixbars-driven",
+    passed="path-sixbars-passed",
+)
+"""Sixbars of the requested types."""
+
+EIGHTBARS = Family(
+    name="eightbar",
+    max_rounds=1,
+    draw_count=98304,
+    start_count=240,
+    method="eightbar_shapes",
+    # Three of four perturbed eightbars do not close; of sixbars too few for halved ones to pay.
+    halvings=4,
+    free_generation_count=100,
+    fitted="path-eightbars-fitted",
+    driven="path-eightbars-driven",
+    passed="path-eightbars-passed",
+)
+"""Eightbars of all topologies: ten times as many as of sixbars, of which a curve is near to a few."""
+
+Multiloop = SixbarMechanism | EightbarMechanism
 
 
 def solve_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by sixbars of the types that it names."""
+    return _solve_exactly_or_fit(problem, SIXBARS, problem.sixbars, progress)
+
+
+def solve_eightbars(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation by eightbars."""
+    return _solve_exactly_or_fit(problem, EIGHTBARS, ("eightbar",), progress)
+
+
+def _solve_exactly_or_fit(
+    problem: PathProblem, family: Family, types: Sequence[str], progress: Progress
+) -> PathResult:  # fmt: skip
+    def solve(statement: PathProblem, part: Progress) -> PathResult:
+        return _solve_by_family(statement, family, types, part)
+
     if problem.is_fitted:
-        return _solve_by_sixbars(problem, progress)
-    return solve_exactly_or_fit(problem, progress, _solve_by_sixbars, _solve_by_sixbars)
+        return solve(problem, progress)
+    return solve_exactly_or_fit(problem, progress, solve, solve, family.name)
 
 
 def warm_up() -> None:
@@ -131,24 +221,24 @@ def warm_up() -> None:
     pack_limits = build_packer(problem, 0j, 1.0, SOUND_TRANSMISSION_ANGLE, MAX_LINK_RATIO)
     task = FitTask(build_point_targets(circle, np.ones(SHAPE_POINT_COUNT)), pack_limits, back=1.0)
     for kind in ("stephenson_3", "stephenson_2"):
-        fits = find_similar_linkages(SIXBAR_FORMS[kind][0], circle, True, 256, 2, np.random.default_rng(0))
+        fits = find_similar_linkages(list_forms(kind)[0], circle, True, 256, 2, np.random.default_rng(0))
         fit_constrained(descend_softly(fits, task, 2), task, rounds=1, steps=2)
 
 
 class _Search:
-    """A search for sixbars along a target."""
+    """A search for linkages of one family along a target."""
 
-    def __init__(self, problem: PathProblem) -> None:
-        self.problem = problem
+    def __init__(self, problem: PathProblem, family: Family, types: Sequence[str]) -> None:
+        self.problem, self.family = problem, family
         self.target = TargetCurve(problem)
         limits = problem.constraints
         required_angle = limits.min_transmission_angle
-        # Without a required angle sixbars would often end next to a toggle, where they are useless.
+        # Without a required angle linkages would often end next to a toggle, where they are useless.
         self.least_angle = SOUND_TRANSMISSION_ANGLE if required_angle is None else required_angle
         pack_limits = self.build_packer(self.least_angle)
-        self.family = CLASS_LINKS[limits.grashof]
+        self.shortest = CLASS_LINKS[limits.grashof]
         # The input of a stroke may swing, unless a full turn is required or a class that makes full turns.
-        self.full_turn = problem.closed or limits.full_rotation or self.family >= 0
+        self.full_turn = problem.closed or limits.full_rotation or self.shortest >= 0
         self.steps, self.places = self.target.steps, self.target.places
         # Few points define no curve: a spline through them serves as the target of the comparison.
         if len(self.target.points) < MIN_DEFINING_POINTS and not problem.is_matched:
@@ -157,8 +247,10 @@ class _Search:
             build_point_targets(self.steps, np.ones(SHAPE_POINT_COUNT)), pack_limits, self.full_turn, SOFT_STEP_COUNT
         )
         self.point_task, self.final_task, self.part = self._build_point_tasks()
-        self.kinds = {id(topology): kind for kind in problem.sixbars for topology in SIXBAR_FORMS[kind]}
-        # Constraints that the fits do not know reject many sixbars: keep more of them.
+        self.others: list[Fit] = []
+        self.topologies = [topology for kind in types for topology in list_forms(kind)]
+        self.kinds = {id(topology): kind for kind in types for topology in list_forms(kind)}
+        # Constraints that the fits do not know reject many linkages: keep more of them.
         self.is_judged = bool(
             problem.space is not None or problem.layout is not None or limits.force_limits or problem.stance
         )
@@ -180,41 +272,48 @@ class _Search:
         weights = target.weights[:fitted][part]
         targets = build_point_targets(target.fitted[:fitted][part], weights)
         soft = replace(self.shape_task, targets=targets)
-        # Only a dense closed polyline defines the curve between its points.
-        dense = problem.is_fitted and problem.closed and len(target.points) >= MIN_POLYLINE_POINTS
+        # Only a dense polyline defines the curve between its points; that of a stroke is a part of a turn.
+        dense = problem.is_fitted and len(target.points) >= MIN_POLYLINE_POINTS
+        dense = dense and (problem.closed or not self.full_turn)
         # Both directions count equally: the steps of the curve share the total weight of the points.
         back = float(weights.sum()) if dense else 0.0
         final = replace(soft, steps=BACK_STEP_COUNT if dense else ANGLE_STEP_COUNT, back=back)
+        if not problem.closed:
+            # A stroke that is only measured at its points may stray between them by many times its size.
+            soft = replace(soft, back=back)
         if stance is not None:
             final = replace(
                 final, rows=compute_linkage_stance_rows, prefix=stance, prefix_margins=MARGIN_COUNT
             )  # fmt: skip
         return soft, final, part
 
-    def list_topologies(self) -> list[Topology]:
-        """Return the topologies of the requested types."""
-        return [topology for kind in self.problem.sixbars for topology in SIXBAR_FORMS[kind]]
-
     def run(self, progress: Progress) -> list[Fit]:
         """Return the best fits to the points, the nearest first, with constraints as penalties."""
-        rng, topologies = np.random.default_rng(self.problem.seed), self.list_topologies()
+        rng = np.random.default_rng(self.problem.seed)
         pool: list[Fit] = []
-        found, enough = 0, self.compute_found_cost()
-        for number in range(MAX_ROUNDS):
+        found, enough, rounds = 0, self.compute_found_cost(), self.family.max_rounds
+        for number in range(rounds):
             progress(
-                number / MAX_ROUNDS,
-                compose("path-sixbars-fitted", compared=DRAW_COUNT, fitted=START_COUNT, round=number + 1),
+                number / rounds,
+                compose(
+                    self.family.fitted,
+                    compared=self.family.draw_count,
+                    fitted=self.family.start_count,
+                    round=number + 1,
+                ),
             )
-            starts = self._draw_starts(topologies, rng)
-            fits = sort_fits(descend_softly(starts, self.shape_task, MAX_START_STEPS))[:POOL_SIZE]
-            moved = [fit._replace(inputs=self._interpolate_inputs(fit.inputs)) for fit in fits]
-            pool = sort_fits([*pool, *descend_softly(moved, self.point_task, MAX_HOP_STEPS)])[:POOL_SIZE]
+            starts = self._draw_starts(rng)
+            fits = sort_fits(descend_softly(starts, self.shape_task, MAX_START_STEPS))
+            moved = [fit._replace(inputs=self._interpolate_inputs(fit.inputs)) for fit in fits[:MAX_FREE_STARTS]]
+            self.others += moved[POOL_SIZE:]
+            moved = descend_softly(moved[:POOL_SIZE], self.point_task, MAX_HOP_STEPS)
+            pool = sort_fits([*pool, *moved])[:POOL_SIZE]
             for _ in range(GENERATION_COUNT):
                 found = sum(fit.cost <= enough for fit in pool)
                 # A problem with constraints that the kernels do not know needs a choice of fits, not only one.
                 if found >= (MIN_FOUND_CONSTRAINED if self.is_judged else MIN_FOUND):
                     return pool
-                pool = hop_basins(pool, self.point_task, HOP_COUNT, MAX_HOP_STEPS, rng)
+                pool = hop_basins(pool, self.point_task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings)
             if found and not self.is_judged:
                 break
         return pool
@@ -223,19 +322,19 @@ class _Search:
         """Return half the weighted sum of squares of a fit at the points."""
         return 0.5 * FOUND_ERROR**2 * float(np.sum(self.point_task.targets[:, ROOT] ** 2))
 
-    def _draw_starts(self, topologies: Sequence[Topology], rng: np.random.Generator) -> list[Fit]:
+    def _draw_starts(self, rng: np.random.Generator) -> list[Fit]:
         """Return the random linkages that are most similar to the target, of all topologies."""
         share = 1.0 if self.problem.closed else OPEN_DRAW_SHARE
-        count = math.ceil(share * DRAW_COUNT / len(topologies))
-        keep = math.ceil(START_COUNT / len(topologies))
+        count = math.ceil(share * self.family.draw_count / len(self.topologies))
+        keep = math.ceil(self.family.start_count / len(self.topologies))
         found: list[Fit] = []
-        for topology in topologies:
+        for topology in self.topologies:
             found += find_similar_linkages(
-                topology, self.steps, self.problem.closed, count, 2 * keep, rng, family=self.family,
+                topology, self.steps, self.problem.closed, count, 2 * keep, rng, family=self.shortest,
                 longest=self.problem.longest_link / self.target.size, full_turn=self.full_turn,
             )  # fmt: skip
         # Similar shapes decide, not topologies; but no topology fills the whole list.
-        return sort_fits(found)[:START_COUNT]
+        return sort_fits(found)[: self.family.start_count]
 
     def _interpolate_inputs(self, inputs: Real) -> Real:
         """Return the inputs at the points of a fit, from those at equal steps along the target."""
@@ -253,6 +352,32 @@ class _Search:
         ends += self._raise_angles(sort_fits(ends))
         failed = [fit for fit, end in zip(begun, ends, strict=False) if not math.isfinite(end.cost)]
         return [*sort_fits(ends), *failed]
+
+    def fit_in_any_order(self, pool: Sequence[Fit], progress: Progress) -> list[Fit]:
+        """Return fits that approach the points in any order, under all constraints; none if the pool is at the points.
+
+        They minimize the mean distance, to which corners contribute less than to squares, and a stroke that is retraced
+        may be met on either way.
+        """
+        count = self.family.free_generation_count
+        if not self.final_task.back or not count or not pool or pool[0].cost <= self.compute_found_cost():
+            return []
+        rng = np.random.default_rng([self.problem.seed, 1])
+        task = replace(self.final_task, width=FREE_WIDTH, soft_weight=FREE_SOFT_WEIGHT)
+        # The ends of a stroke's range are unknowns of this form.
+        ranged = not self.problem.closed
+        free = [
+            fit._replace(x=np.append(fit.x, [fit.inputs.min(), fit.inputs.max()])) if ranged else fit
+            for fit in [*pool, *self.others]
+        ]
+        free = sort_fits(descend_softly(free, task, MAX_HOP_STEPS))
+        for number in range(count):
+            progress(number / count, compose("path-linkages-perturbed", number=number * HOP_COUNT))
+            # Fewer fits are pursued towards the end, the best of them more often.
+            live = max(MIN_POOL_SIZE, math.ceil(POOL_SIZE * (1.0 - number / count)))
+            free = hop_basins(free[:live], task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings) + free[live:]
+        ends = sort_fits(fit_constrained(free[:MAX_FITTED], task))
+        return [fit._replace(x=fit.x[:-2]) if ranged else fit for fit in ends]
 
     def _raise_angles(self, fits: Sequence[Fit]) -> list[Fit]:
         """Return the fits that are as near with a larger transmission angle, refitted in steps of the angle."""
@@ -274,25 +399,29 @@ class _Search:
         return raised
 
 
-def _solve_by_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
-    search = _Search(problem)
-    ends = search.refine(search.run(scale_progress(progress, 0.0, 0.7)))
+def _solve_by_family(problem: PathProblem, family: Family, types: Sequence[str], progress: Progress) -> PathResult:
+    search = _Search(problem, family, types)
+    pool = search.run(scale_progress(progress, 0.0, ORDERED_PROGRESS))
+    free = search.fit_in_any_order(pool, scale_progress(progress, ORDERED_PROGRESS, FREE_PROGRESS))
+    ends = [*free, *search.refine(pool)]
     made = [
-        build_fitted_sixbar(search.kinds[id(fit.topology)], fit, search.target.centre, search.target.size)
+        build_fitted_linkage(search.kinds[id(fit.topology)], fit, search.target.centre, search.target.size)
         for fit in ends
     ]
     mechanisms = [mechanism for mechanism in made if mechanism is not None]
-    return _build_result(problem, mechanisms, scale_progress(progress, 0.8, 1.0))
+    return _build_result(problem, family, mechanisms, scale_progress(progress, FREE_PROGRESS, 1.0))
 
 
-def _build_result(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: Progress) -> PathResult:
-    """Drive the sixbars, rank those that pass, and build the result."""
+def _build_result(
+    problem: PathProblem, family: Family, mechanisms: list[Multiloop], progress: Progress
+) -> PathResult:  # fmt: skip
+    """Drive the linkages, rank those that pass, and build the result."""
     joints = [[to_complex(joint) for joint in one.skeleton.joints.values()] for one in mechanisms]
-    # All sixbars have eight joints, so that those of different types can be compared.
+    # All linkages of a family have as many joints, so that those of different types can be compared.
     chosen = select_distinct(joints, len(joints), DESIGN_DUPLICATE_TOLERANCE * problem.task_size)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
-        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "path-sixbars-driven"),
+        report_candidates([mechanisms[n] for n in chosen], progress, (0.0, 1.0), family.driven),
         partial(verify_traced, problem),
     )
     if problem.is_fitted:
@@ -300,35 +429,45 @@ def _build_result(problem: PathProblem, mechanisms: list[SixbarMechanism], progr
     progress(1.0, compose("path-verified"))
     summary = join_sentences(
         [
-            compose("path-sixbars-passed", passed=sifting.accepted, count=sifting.candidates),
+            compose(family.passed, passed=sifting.accepted, count=sifting.candidates),
             sifting.describe_reasons(),
             "" if sifting.passed else compose("path-none-found"),
         ]
     )
     return PathResult(
         designs=sifting.select_designs(build_ordering(problem)),
-        search=sifting.build_search("sixbar_shapes"),
+        search=sifting.build_search(family.method),
         summary=summary,
     )
 
 
-def describe_best_sixbar(problem: PathProblem, designs: Sequence[PathDesign]) -> str:
-    """Describe the best feasible sixbar of a result in a sentence; empty if there is none."""
-    sixbars = [one for one in select_passing(designs) if isinstance(one.mechanism, SixbarMechanism)]
-    if not sixbars:
-        return ""
-    best = sixbars[0]
-    name, link = compose("path-sixbar-name", type=best.mechanism.type), best.point_link or ""
+def describe_best_linkages(problem: PathProblem, designs: Sequence[PathDesign]) -> str:
+    """Describe the best feasible sixbar and the best feasible eightbar of a result; empty if there is none."""
+    passing, sentences = select_passing(designs), []
+    for kind, name in ((SixbarMechanism, "sixbar"), (EightbarMechanism, "eightbar")):
+        best = next((one for one in passing if isinstance(one.mechanism, kind)), None)
+        if best is not None:
+            sentences.append(_describe_best(problem, best, name))
+    return join_sentences(sentences)
+
+
+_BEST_MESSAGES = {
+    "sixbar": ("path-best-sixbar-exact", "path-best-sixbar", "path-best-sixbar-both-ways"),
+    "eightbar": ("path-best-eightbar-exact", "path-best-eightbar", "path-best-eightbar-both-ways"),
+}
+"""Messages about the best linkage by its family: for exact points, for fits, and for fits measured both ways."""
+
+
+def _describe_best(problem: PathProblem, best: PathDesign, name: str) -> str:
+    """Describe the best linkage of a family in a sentence."""
+    exact, fitted, both_ways = _BEST_MESSAGES[name]
+    # A sixbar has a type, an eightbar has none.
+    given = {"link": best.point_link or ""}
+    if name == "sixbar":
+        given["type"] = compose("path-sixbar-name", type=best.mechanism.type)
     if is_exact(best):
-        return compose("path-best-sixbar-exact", type=name, link=link)
-    rms_distance, unit = f"{best.metrics.rms_distance:.3g}", problem.length_unit
+        return compose(exact, **given)
+    given |= {"rms_distance": f"{best.metrics.rms_distance:.3g}", "unit": problem.length_unit}
     if best.metrics.both_way_rms is None:
-        return compose("path-best-sixbar", type=name, link=link, rms_distance=rms_distance, unit=unit)
-    return compose(
-        "path-best-sixbar-both-ways",
-        type=name,
-        link=link,
-        rms_distance=rms_distance,
-        unit=unit,
-        both_way_rms=f"{best.metrics.both_way_rms:.3g}",
-    )
+        return compose(fitted, **given)
+    return compose(both_ways, both_way_rms=f"{best.metrics.both_way_rms:.3g}", **given)

@@ -1,4 +1,4 @@
-"""A problem's constraints on sixbars, packed for the engine (:mod:`synthesis.fit.linkage`), in the target's unit."""
+"""A problem's constraints on sixbars and eightbars, packed for the engine (:mod:`synthesis.fit.linkage`)."""
 
 from __future__ import annotations
 

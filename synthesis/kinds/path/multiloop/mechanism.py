@@ -6,15 +6,17 @@ import numpy as np
 
 from synthesis.fit.linkage.closure import move_reference
 from synthesis.fit.linkage.descent import Fit
-from synthesis.model.linkage.answer import SixbarMechanism
-from synthesis.model.linkage.sixbars import build_sixbar
+from synthesis.model.linkage.answer import EightbarMechanism, SixbarMechanism
+from synthesis.model.linkage.sixbars import build_eightbar, build_sixbar
 
 MIN_LINK = 1e-6
 """Minimum distance of two pins of one link, as a share of the task's size."""
 
 
-def build_fitted_sixbar(kind: str, fit: Fit, centre: complex, size: float) -> SixbarMechanism | None:
-    """Return the sixbar of a fit at its first input; None if it does not close there, or a link has no length.
+def build_fitted_linkage(
+    kind: str, fit: Fit, centre: complex, size: float
+) -> SixbarMechanism | EightbarMechanism | None:
+    """Return the linkage of a fit at its first input; None if it does not close there, or a link has no length.
 
     ``centre`` and ``size`` are the origin and the unit of the fit, in the problem's coordinates.
     """
@@ -25,6 +27,6 @@ def build_fitted_sixbar(kind: str, fit: Fit, centre: complex, size: float) -> Si
     joints = {name: complex(centre + size * complex(*z[2 * k : 2 * k + 2])) for k, name in names.items()}
     links = {link: tuple(names[pin] for pin in pins) for link, pins in topology.links.items()}
     links[topology.body] += ("P",)
-    made = build_sixbar(kind, joints, links)
+    made = build_eightbar(joints, links) if kind == "eightbar" else build_sixbar(kind, joints, links)
     # Coinciding pins cannot be manufactured, nor driven reliably.
     return made if min(made.links.values()) > MIN_LINK * size else None

@@ -1,0 +1,1 @@
+"""Sixbars and eightbars that draw a path."""

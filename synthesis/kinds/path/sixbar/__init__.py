@@ -1,1 +1,0 @@
-"""Sixbars that draw a path."""
