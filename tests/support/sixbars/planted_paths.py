@@ -1,10 +1,10 @@
-"""Planted curves: random sixbars, each with 24 points of its own coupler curve, and whether one as good is found.
+"""Planted curves: random linkages, each with 24 points of its own curve, and whether one as good is found.
 
-A planted sixbar has a crank that turns fully, transmission angles of 15° at least, and P on a link that is not joined
-to the ground. The task is the points, the type, the planted transmission angle and twice the link ratio. What is made
-least is the distance both ways between the curve and the polygon through the points, which the planted sixbar does not
-make zero either: *as good* are the tasks with a design that has no more of it than the planted sixbar. ``near`` are
-those whose points lie on the curve of a design to a thousandth of their box's diagonal, root mean square. ``false``
+A planted sixbar or eightbar has a crank that turns fully, transmission angles of 15° at least, and P on a link that is
+not joined to the ground. The task is the points, the type, the planted transmission angle and twice the link ratio. The
+search minimizes the distance both ways between the curve and the polygon through the points, which the planted linkage
+does not make zero either: *as good* are the tasks with a design that has no more of it than the planted one. ``near``
+are those whose points lie on the curve of a design to a thousandth of their box's diagonal, root mean square. ``false``
 counts designs that their loops (tests/oracles/loops.py) do not confirm over a whole turn: branch, closure, curve, or
 transmission angles.
 """
@@ -19,6 +19,9 @@ import numpy as np
 from kinematics.arrays import Complex
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.fit.linkage.topology import CRANK, FIXED, POINT, Topology, list_chains
+from synthesis.model.linkage.sixbars import list_lengths
 from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.oracles.loops import Loops
 from tests.support.sixbars.driven import transmits
@@ -31,20 +34,70 @@ TASKS = 100
 SAMPLES, DENSE, FINE, DRIVEN = 24, 240, 28_800, 361
 LEAST, WIDEST = 15.0, 10.0
 NEAR = 1e-3
-TYPES = ["watt_1", "stephenson_1", "stephenson_3", "stephenson_2"]
+TYPES = ["watt_1", "stephenson_1", "stephenson_3", "stephenson_2", "eightbar"]
+BATCH, SWEPT = 40_000, 48
+EIGHTBARS = list_chains(3)
+
+
+def list_closing(topology: Topology, rng: np.random.Generator) -> list[dict[str, complex]]:
+    """Random eightbars, of coordinates that are drawn evenly, whose crank turns through with the least angle."""
+    names = {node: name for name, node in topology.joints.items()}
+    places = rng.uniform(-1.0, 1.0, (BATCH, len(topology.nodes))) + 1j * rng.uniform(
+        -1.0, 1.0, (BATCH, len(topology.nodes))
+    )
+    turn = np.exp(2j * np.pi * np.arange(SWEPT) / SWEPT)
+    moved: list[Any] = []
+    for k, (kind, i, j, _) in enumerate(topology.nodes):
+        own = places[:, k, None]
+        if kind == FIXED:
+            moved.append(own + 0.0 * turn)
+        elif kind == CRANK:
+            moved.append(places[:, i, None] + turn * (own - places[:, i, None]))
+        elif kind == POINT:
+            ratio = (own - places[:, i, None]) / (places[:, j, None] - places[:, i, None])
+            moved.append(moved[i] + ratio * (moved[j] - moved[i]))
+        else:
+            # Two circles about the pins of the dyad: cosine of its angle, and the side of the reference.
+            r1, r2 = np.abs(own - places[:, i, None]), np.abs(own - places[:, j, None])
+            base = moved[j] - moved[i]
+            cosine = (r1**2 + r2**2 - np.abs(base) ** 2) / (2.0 * r1 * r2)
+            kept = np.abs(cosine).max(axis=1) < math.cos(math.radians(LEAST))
+            along = (r1**2 - r2**2 + np.abs(base) ** 2) / (2.0 * np.abs(base) ** 2)
+            side = np.sign(((places[:, j] - places[:, i]).conj() * (places[:, k] - places[:, i])).imag)[:, None]
+            height = np.sqrt(np.maximum((r1 / np.abs(base)) ** 2 - along**2, 0.0))
+            moved.append(moved[i] + base * (along + 1j * side * height))
+            places, moved = places[kept], [row[kept] for row in moved]
+    return [{name: complex(row[node]) for node, name in names.items()} for row in places]
+
+
+def draw_eightbar(rng: np.random.Generator) -> tuple[dict[str, complex], dict[str, tuple[str, ...]]]:
+    """A random eightbar whose crank turns through: its joints and links."""
+    while True:
+        topology = EIGHTBARS[rng.integers(len(EIGHTBARS))]
+        names = {node: name for name, node in topology.joints.items()}
+        links = {link: tuple(names[pin] for pin in pins) for link, pins in topology.links.items()}
+        links[topology.body] += ("P",)
+        closing = list_closing(topology, rng)
+        if closing:
+            return closing[0], links
 
 
 def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, float, dict[str, float]]:
     """Points of a random sixbar's curve, its distance from them both ways, and what it keeps."""
-    names = sorted({joint for listed in catalogue.SIXBAR_LINKS[kind].values() for joint in listed})
     turn = np.linspace(0.0, 2.0 * math.pi, DENSE, endpoint=False)
     while True:
-        places = rng.uniform(-1.0, 1.0, len(names)) + 1j * rng.uniform(-1.0, 1.0, len(names))
-        joints = dict(zip(names, (complex(z) for z in places), strict=True))
-        ratio = ratio_of(joints, kind)
+        if kind == "eightbar":
+            joints, links = draw_eightbar(rng)
+            lengths = list_lengths(joints, links).values()
+            ratio = max(lengths) / min(lengths)
+        else:
+            names = sorted({joint for listed in catalogue.SIXBAR_LINKS[kind].values() for joint in listed})
+            places = rng.uniform(-1.0, 1.0, len(names)) + 1j * rng.uniform(-1.0, 1.0, len(names))
+            joints = dict(zip(names, (complex(z) for z in places), strict=True))
+            ratio = ratio_of(joints, kind)
         if ratio > WIDEST:
             continue
-        mechanism = catalogue.make_sixbar(kind, joints)
+        mechanism = Mechanism(joints, links, "input") if kind == "eightbar" else catalogue.make_sixbar(kind, joints)
         motion = drive(mechanism, float(mechanism.reference_input) + turn, order=0)
         if not motion.valid.all():
             continue
@@ -84,7 +137,12 @@ def false_claim(design: Any) -> str:
     if not max(np.abs(met.points - curve).max(), abs(met.points[-1] - met.points[0])) < 1e-7 * np.abs(curve).max():
         return "another curve"
     on = design.mechanism.type
-    at = {"coupler": "B", "link_5": "D" if on == "stephenson_3" else "E"}
+    if on == "eightbar":
+        # The second pin of a dyad's first link is that of the dyad. Every dyad counts, also where links form a triad.
+        at = {link: loops.links[link][1] for link in ("coupler", "link_5", "link_7")}
+        loops.triad = []
+    else:
+        at = {"coupler": "B", "link_5": "D" if on == "stephenson_3" else "E"}
     return "" if transmits(design, loops, met, at) else "transmission angle"
 
 
