@@ -74,7 +74,7 @@ def draw_rendered_sheet(assembly: Assembly, title: str, at: float) -> str:
         data = "data:image/png;base64," + base64.b64encode(shot.image).decode()
         image = make_element("image", x=panel.left, y=panel.low, width=panel.width, height=panel.height, href=data)
         bar, _ = draw_scale_bar(Viewport(panel, 0j, 0j, shot.shown.scale), "mm")
-        parts += [image, draw_panel(panel, f"seen_{n + 1}"), draw_caption(panel, words), bar]
+        parts += [draw_panel(panel, f"seen_{n + 1}"), image, draw_caption(panel, words), bar]
     words = f"{len(assembly.parts)} parts, isometric; lengths in millimetres"
     if assembly.scale != 1.0:
         words += f"; {assembly.scale:g} times the design"
