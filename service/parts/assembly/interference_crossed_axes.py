@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +18,11 @@ import shapely
 from numpy.typing import NDArray
 
 from kinematics.arrays import Mask, Real
-from service.parts.assembly.model import Assembly, Carrier, Part
+from service.parts.assembly.model import Assembly, Carrier, Part, compute_poses
 from service.parts.geometry.cut_solids import CutBody
+from service.parts.geometry.meshes import DISPLAY_SAG, read_triangles, to_pairs
 from service.parts.geometry.regions import Outline, Region, make_polygon
-from service.parts.geometry.solids import Body, Mesh, Prism, RevolvedBody, TaperedBody, TwistedPrism
+from service.parts.geometry.solids import Body, Mesh, Prism, TaperedBody, TwistedPrism
 
 STEPS_PER_SIZE = 160.0
 """Number of steps in the size of an assembly."""
@@ -34,9 +35,6 @@ MIN_DEPTH = 4e-3
 
 LEVEL_COUNT = 160
 """Number of sections of a mesh; between two sections a point must lie in both."""
-
-MERGE_DECIMALS = 6
-"""Decimals of a millimetre to which points are merged."""
 
 MAX_SAG = 2e-3
 """Maximum distance of polygons from arcs, millimetres."""
@@ -68,13 +66,10 @@ class BodySurface:
     def points(self) -> Real:
         """Surface points, shape (n, 3): x, y and height."""
         body = self._body
-        if isinstance(body, RevolvedBody):
-            return self._sample_revolved(body)
         if isinstance(body, TaperedBody):
             return self._sample_tapered(body)
         if isinstance(body, CutBody):
-            # Its triangles are about one step wide and share most corners.
-            return np.unique(np.round(body.facets.reshape(-1, 3), MERGE_DECIMALS), axis=0)
+            return read_triangles(body.make_mesh(DISPLAY_SAG).refine_to_length(self._step))[0]
         if isinstance(body, Mesh):
             return _sample_triangles(body.corners[body.triangles], self._step)
         assert isinstance(body, Prism | TwistedPrism)
@@ -133,16 +128,11 @@ class BodySurface:
         if isinstance(body, Mesh):
             found[deep] = self._find_in_sections(body, points[deep])
             return found
-        if isinstance(body, RevolvedBody):
-            radii = np.hypot(x - body.centre.real, y - body.centre.imag)
-            # The half section is tested in radius and height.
-            found[deep] = shapely.contains_xy(self._section, radii, z)
-            return found
         if isinstance(body, TaperedBody):
             share = body.scale(z)
             # Project the point along the line to the apex onto the reference plane.
-            place = body.centre + (x + 1j * y - body.centre) / share
-            radii = np.hypot(x - body.centre.real, y - body.centre.imag)
+            place = (x + 1j * y) / share
+            radii = np.hypot(x, y)
             inside = shapely.contains_xy(self._section, place.real, place.imag)
             inside &= shapely.contains_xy(self._profile, radii, z)
             found[deep] = inside & ~shapely.contains_xy(self._holes, x, y)
@@ -187,13 +177,9 @@ class BodySurface:
     @cached_property
     def _section(self) -> shapely.Geometry:
         body = self._body
-        if isinstance(body, RevolvedBody):
-            outer = shapely.Polygon([(z.real, z.imag) for z in body.profile])
-        else:
-            region = body.section if isinstance(body, TwistedPrism | TaperedBody) else body.region
-            outer = _make_polygon(region.outer)
+        region = body.section if isinstance(body, TwistedPrism | TaperedBody) else body.region
         # Only points deeper than the polygon error count.
-        inner = shapely.buffer(outer, -MIN_DEPTH)
+        inner = shapely.buffer(_make_polygon(region.outer), -MIN_DEPTH)
         shapely.prepare(inner)
         return inner
 
@@ -224,30 +210,18 @@ class BodySurface:
         low, high = body.find_ends(around)
         _, inner, *_, upper, _ = body.profile
         ways = [(np.full(len(around), inner), low), (low, high), (high, np.full(len(around), upper))]
-        turns = (around - body.centre) / np.abs(around - body.centre)
+        turns = around / np.abs(around)
         found = []
         for start, end in ways:
             for share in np.linspace(0.0, 1.0, math.ceil(float(np.abs(end - start).max()) / self._step) + 1):
                 place = start + share * (end - start)
-                at = body.centre + place.real * turns
+                at = place.real * turns
                 found.append(np.column_stack([at.real, at.imag, place.imag]))
         heights = _make_steps(body.low, body.high, self._step)
         for hole in body.section.holes:
             edge = np.tile(_sample_outline(hole, self._step), len(heights))
             found.append(np.column_stack([edge.real, edge.imag, np.repeat(heights, len(edge) // len(heights))]))
         return np.concatenate(found)
-
-    def _sample_revolved(self, body: RevolvedBody) -> Real:
-        corners = [*body.profile, body.profile[0]]
-        edges = [
-            start + (end - start) * np.linspace(0.0, 1.0, math.ceil(abs(end - start) / self._step) + 1)
-            for start, end in pairwise(corners)
-        ]
-        profile = np.concatenate(edges)
-        angles = np.linspace(0.0, 2.0 * math.pi, math.ceil(2.0 * math.pi * profile.real.max() / self._step) + 8)
-        around = body.centre + profile.real[:, None] * np.exp(1j * angles)
-        heights = np.broadcast_to(profile.imag[:, None], around.shape)
-        return np.stack([around.real, around.imag, heights], axis=-1).reshape(-1, 3)
 
     def _sample_faces(self, region: Region, body: Prism | TwistedPrism) -> list[Real]:
         """Return points over the lower and the upper face."""
@@ -313,17 +287,7 @@ class CrossingCheck:
     def _get_position(self, carrier: Carrier) -> tuple[Real, Real]:
         """Return rotation and position in space at each input, shapes (count, 3, 3) and (count, 3)."""
         if carrier not in self._places:
-            placed = self._placed[carrier]
-            turn, shift = (np.broadcast_to(values, self._count) for values in (placed.turn, placed.shift))
-            zero, unit = np.zeros(self._count), np.ones(self._count)
-            turned = np.array([[turn.real, -turn.imag, zero], [turn.imag, turn.real, zero], [zero, zero, unit]])
-            moved = np.array([shift.real, shift.imag, zero])
-            rotation, place = np.moveaxis(turned, -1, 0), np.moveaxis(moved, -1, 0)
-            if placed.frame is not None:
-                axes, origin = placed.frame.axes.reshape(-1, 3, 3), placed.frame.origin.reshape(-1, 3)
-                rotation = axes @ rotation
-                place = origin + np.einsum("kij,kj->ki", np.broadcast_to(axes, rotation.shape), place)
-            self._places[carrier] = rotation, place
+            self._places[carrier] = compute_poses(self._placed[carrier], self._count)
         return self._places[carrier]
 
     def _get_box(self, part: Part, number: int) -> tuple[Real, Real]:
@@ -367,7 +331,7 @@ def _sample_triangles(triangles: Real, step: float) -> Real:
 
 def _make_polygon(outline: Outline) -> shapely.Polygon:
     places = make_polygon(outline, beyond=False, sag=MAX_SAG)
-    return shapely.Polygon(np.column_stack([places.real, places.imag]))
+    return shapely.Polygon(to_pairs(places))
 
 
 def _sample_outline(outline: Outline, step: float) -> NDArray[np.complex128]:

@@ -5,14 +5,19 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Literal, NamedTuple, Protocol
+from functools import cached_property, reduce
+from operator import add
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from service.parts.geometry.meshes import DISPLAY_SAG
 from service.parts.geometry.regions import Region, measure_area, measure_extent
 from service.parts.geometry.solids import Body
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 Sort = Literal["base", "link", "block", "gear", "cam", "wheel", "pin", "ring", "washer", "spacer", "key"]
 """Kind of a part; shafts are pins."""
@@ -74,6 +79,19 @@ class Placement(NamedTuple):
     turn: Complex
     shift: Complex
     frame: Frame | None = None
+
+
+def compute_poses(placed: Placement, count: int) -> tuple[Real, Real]:
+    """Return the rotations and positions in space of a placement, shapes (count, 3, 3) and (count, 3)."""
+    turn, shift = (np.broadcast_to(values, count) for values in (placed.turn, placed.shift))
+    rotation, place = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
+    rotation[:, 0, 0] = rotation[:, 1, 1] = turn.real
+    rotation[:, 1, 0], rotation[:, 0, 1] = turn.imag, -turn.imag
+    place[:, 0], place[:, 1] = shift.real, shift.imag
+    if placed.frame is None:
+        return rotation, place
+    axes = placed.frame.axes
+    return axes @ rotation, placed.frame.origin + (axes @ place[:, :, None])[:, :, 0]
 
 
 class Motion(Protocol):
@@ -199,6 +217,12 @@ class Part:
     def volume(self) -> float:
         """Volume, cubic millimetres."""
         return math.fsum(body.volume for body in self.bodies)
+
+    @cached_property
+    def mesh(self) -> Manifold:
+        """Closed mesh of all bodies in the reference configuration, for files and pictures."""
+        first, *others = (body.make_mesh(DISPLAY_SAG) for body in self.bodies)
+        return reduce(add, others, first)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,29 +1,27 @@
 """An assembly of crossing shafts on one sheet: from above and from the front, notes, and the bill of materials.
 
-Along its axis a body shows its region; at right angles to it a rectangle or its profile; in other directions the hull
-of its ends. Bodies closer to the viewer are drawn later.
+Each part is drawn as the shadow of its mesh. Parts closer to the viewer are drawn later.
 """
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import shapely
 
 from kinematics.arrays import Complex, Real
 from service.parts.assembly.bill_of_materials import HEADER, list_row
 from service.parts.assembly.items import Item
 from service.parts.assembly.model import SHEET_SORTS, Assembly, Frame, Part
-from service.parts.geometry.cut_solids import CutBody
-from service.parts.geometry.regions import make_polygon, measure_extent
-from service.parts.geometry.solids import Body, RevolvedBody, TaperedBody
 from service.render.page.blocks import TableRow, make_table
 from service.render.page.sheet import BORDER, INNER_WIDTH, SHEET_WIDTH, TOP, draw_caption, draw_panel, write_sheet
 from service.render.page.svg import Box, Element, Viewport, draw_line, draw_text, format_number, make_element
 from service.render.page.symbols import GREY, INK, draw_scale_bar
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 VIEW_HEIGHT, MARGIN = 380.0, 30.0
 """Height of a view and its margin, pixels."""
@@ -33,9 +31,6 @@ LINE_LENGTH, LINE_HEIGHT, FONT_SIZE = 140, 16.0, 11.5
 
 COLUMN_ENDS = (0.0, 0.25, 0.34, 0.42, 0.50, 0.58, 0.75, 0.86, 1.0)
 """Left end of the bill's names, and right ends of its other columns, shares of the width."""
-
-PERPENDICULAR_TOLERANCE = 1e-9
-"""Cosine below which an axis is at right angles to the view."""
 
 AXIS_OVERHANG = 0.04
 """Extension of an axis line beyond its parts, as a share of the assembly's size."""
@@ -94,18 +89,15 @@ def draw_crossing_sheet(assembly: Assembly, listed: Sequence[Item], title: str) 
 
 def _draw_view(assembly: Assembly, view: View, top: float) -> tuple[list[Element], float]:
     panel = Box(BORDER, top, SHEET_WIDTH - BORDER, top + VIEW_HEIGHT)
-    frames = {part.name: assembly.frames.get(part.name, LEVEL_FRAME) for part in assembly.parts}
-    seen = {part.name: [_make_shadow(body, frames[part.name], view) for body in part.bodies] for part in assembly.parts}
-    bounds = np.array([shape.bounds for shapes in seen.values() for shape in shapes])
-    (left, low), (right, high) = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
+    axes = np.array([view.right, view.up, view.toward])
+    seen = {part.name: _turn_mesh(part, assembly.frames.get(part.name, LEVEL_FRAME), axes) for part in assembly.parts}
+    bounds = np.array([mesh.bounding_box() for mesh in seen.values()])
+    (left, low), (right, high) = bounds[:, :2].min(axis=0), bounds[:, 3:5].max(axis=0)
     port = Viewport.fit(Box(left, low, right, high), panel, MARGIN, 16.0)
     shapes: list[Element] = []
     # Painter's algorithm: the nearest part is drawn last.
-    for part in sorted(assembly.parts, key=lambda part: _measure_nearness(part, frames[part.name], view)):
-        whole = shapely.union_all(seen[part.name])
-        d = "".join(
-            _format_path(ring, port) for face in shapely.get_parts(whole) for ring in (face.exterior, *face.interiors)
-        )
+    for part in sorted(assembly.parts, key=lambda part: float(seen[part.name].bounding_box()[5])):
+        d = "".join(_format_path(contour, port) for contour in seen[part.name].project().to_polygons())
         shapes.append(
             make_element("path", d=d, fill=part.colour, fill_opacity=0.82 if part.sort in SHEET_SORTS else 1.0,
                     fill_rule="evenodd", stroke=INK, stroke_width=0.7, data_part=part.name)
@@ -118,6 +110,11 @@ def _draw_view(assembly: Assembly, view: View, top: float) -> tuple[list[Element
         *_draw_axes(assembly, view, port),
         bar,
     ], panel.high
+
+
+def _turn_mesh(part: Part, frame: Frame, axes: Real) -> Manifold:
+    """Return the mesh of a part in its frame, seen along the last of the axes."""
+    return part.mesh.transform(np.column_stack([axes @ frame.axes, axes @ frame.origin]))
 
 
 def _draw_axes(assembly: Assembly, view: View, port: Viewport) -> list[Element]:
@@ -133,56 +130,6 @@ def _draw_axes(assembly: Assembly, view: View, port: Viewport) -> list[Element]:
     return lines
 
 
-def _make_shadow(body: Body, frame: Frame, view: View) -> shapely.Geometry:
-    """Return the area of the picture that a body covers."""
-    normal, region = frame.axes[:, 2], body.region
-    if abs(float(normal @ view.toward)) > 1.0 - PERPENDICULAR_TOLERANCE:
-        outer, *holes = (_project_points(make_polygon(outline, beyond=True), 0.0, frame, view)
-                         for outline in (region.outer, *region.holes))  # fmt: skip
-        return shapely.Polygon(outer, holes)
-    if abs(float(normal @ view.toward)) < PERPENDICULAR_TOLERANCE:
-        # Direction in the picture at right angles to the axis.
-        across = np.cross(view.toward, normal)
-        direction = complex(across @ frame.axes[:, 0], across @ frame.axes[:, 1])
-        if isinstance(body, RevolvedBody | TaperedBody | CutBody):
-            around = (
-                make_polygon(body.profile, beyond=True)
-                if isinstance(body, CutBody)
-                else np.array(body.profile, np.complex128)
-            )
-            middle = 0.0 if isinstance(body, CutBody) else (body.centre * direction.conjugate()).real
-            halves = [
-                shapely.Polygon(
-                    _project_points(np.asarray(direction * (middle + side * around.real)), around.imag, frame, view)
-                )
-                for side in (1.0, -1.0)
-            ]
-            return shapely.union_all(halves)
-        low, high = measure_extent(region.outer, direction)
-        ends = np.array([low, high, high, low]) * direction
-        return shapely.Polygon(_project_points(ends, np.array([body.low, body.low, body.high, body.high]), frame, view))
-    around = make_polygon(region.outer, beyond=True)
-    both = np.concatenate([_project_points(around, height, frame, view) for height in (body.low, body.high)])
-    return shapely.convex_hull(shapely.MultiPoint(both))
-
-
-def _project_points(places: Complex, heights: float | Real, frame: Frame, view: View) -> Real:
-    """Project points of a plane at heights to the view, shape (n, 2)."""
-    local = np.stack([places.real, places.imag, np.broadcast_to(heights, places.shape)], axis=-1)
-    seen = view.project(frame.origin + local @ frame.axes.T)
-    return np.column_stack([seen.real, seen.imag])
-
-
-def _measure_nearness(part: Part, frame: Frame, view: View) -> float:
-    """Return how close to the viewer a part comes."""
-    outer = make_polygon(part.region.outer, beyond=True)
-    near = []
-    for height in (part.low, part.high):
-        local = np.stack([outer.real, outer.imag, np.full(outer.shape, height)], axis=-1)
-        near.append(float(((frame.origin + local @ frame.axes.T) @ view.toward).max()))
-    return max(near)
-
-
-def _format_path(ring: shapely.LinearRing, port: Viewport) -> str:
-    points = port.points(shapely.get_coordinates(ring) @ np.array([1.0, 1.0j]))
+def _format_path(contour: Real, port: Viewport) -> str:
+    points = port.points(contour @ np.array([1.0, 1.0j]))
     return "M" + "L".join(f"{format_number(z.real)} {format_number(z.imag)}" for z in points.tolist()) + "Z"

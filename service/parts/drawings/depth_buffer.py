@@ -8,23 +8,22 @@ parts, or faces with different normals. The picture is embedded in the sheet as 
 from __future__ import annotations
 
 import base64
-import struct
-import zlib
+import io
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Real
-from service.parts.assembly.model import Assembly, Placement
+from service.parts.assembly.model import Assembly, compute_poses
 from service.parts.drawings.isometric import COSINE, RIGHT_DIRECTION, SINE, VIEWER_DIRECTION
-from service.parts.geometry.triangulation import triangulate
+from service.parts.geometry.meshes import read_triangles
 from service.render.page.sheet import BORDER, INNER_WIDTH, TOP, draw_caption, draw_panel, write_sheet
 from service.render.page.svg import Box, Element, Viewport, make_element
 from service.render.page.symbols import draw_scale_bar
 
-PANEL_HEIGHT, MARGIN, MAX_SAG = 430.0, 24.0, 0.02
-"""Height of a panel and its margin, pixels; maximum distance of facets from arcs, millimetres."""
+PANEL_HEIGHT, MARGIN = 430.0, 24.0
+"""Height of a panel and its margin, pixels."""
 
 OVERSAMPLING = 2
 """Number of samples per pixel of the sheet in each direction."""
@@ -75,7 +74,7 @@ def draw_rendered_sheet(assembly: Assembly, title: str, at: float) -> str:
         data = "data:image/png;base64," + base64.b64encode(shot.image).decode()
         image = make_element("image", x=panel.left, y=panel.low, width=panel.width, height=panel.height, href=data)
         bar, _ = draw_scale_bar(Viewport(panel, 0j, 0j, shot.shown.scale), "mm")
-        parts += [image, draw_panel(panel, f"seen_{n + 1}"), draw_caption(panel, words), bar]
+        parts += [draw_panel(panel, f"seen_{n + 1}"), image, draw_caption(panel, words), bar]
     words = f"{len(assembly.parts)} parts, isometric; lengths in millimetres"
     if assembly.scale != 1.0:
         words += f"; {assembly.scale:g} times the design"
@@ -108,19 +107,10 @@ def _place_triangles(assembly: Assembly, at: float) -> tuple[Real, NDArray[np.in
     state = assembly.motion.compute_state(np.array([at]))
     solids = []
     for part in assembly.parts:
-        triangles = np.concatenate([triangulate(body, MAX_SAG) for body in part.bodies])
-        solids.append(_move_triangles(triangles, assembly.motion.compute_placement(part.carrier, state)))
+        rotation, place = compute_poses(assembly.motion.compute_placement(part.carrier, state), 1)
+        corners, triangles = read_triangles(part.mesh)
+        solids.append((corners @ rotation[0].T + place[0])[triangles])
     return np.concatenate(solids), np.repeat(np.arange(len(solids)), [len(triangles) for triangles in solids])
-
-
-def _move_triangles(triangles: Real, placed: Placement) -> Real:
-    """Return the triangles of a part in place."""
-    turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
-    plane = turn * (triangles[:, :, 0] + 1j * triangles[:, :, 1]) + shift
-    moved = np.stack([plane.real, plane.imag, triangles[:, :, 2]], axis=-1)
-    if placed.frame is None:
-        return moved
-    return np.asarray(placed.frame.origin.reshape(-1, 3)[0] + moved @ placed.frame.axes.reshape(-1, 3, 3)[0].T)
 
 
 def _render_pixels(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Viewport) -> NDArray[np.uint8]:
@@ -220,17 +210,8 @@ def _find_lines(owner: NDArray[np.int64], part: NDArray[np.int64], normals: Real
 
 def _encode_png(pixels: NDArray[np.uint8]) -> bytes:
     """Encode a picture of shape (rows, columns, 3) as PNG."""
-    height, width, _ = pixels.shape
-    # Every row of a PNG starts with its filter type, here none.
-    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)
+    from PIL import Image
 
-    def encode_chunk(name: bytes, content: bytes) -> bytes:
-        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
-
-    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    chunks = (
-        encode_chunk(b"IHDR", head),
-        encode_chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)),
-        encode_chunk(b"IEND", b""),
-    )
-    return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)
+    buffer = io.BytesIO()
+    Image.fromarray(pixels).save(buffer, "PNG")
+    return buffer.getvalue()

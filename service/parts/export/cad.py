@@ -24,9 +24,9 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from service.parts.assembly.model import Assembly, Frame, Part
-from service.parts.geometry.cut_solids import BoreCut, Cut, CutBody, HalfSpaceCut, SlotCut
-from service.parts.geometry.regions import Disc, Loop, Outline, Region, find_arc_middle, scale_outline
-from service.parts.geometry.solids import Body, Mesh, Prism, RevolvedBody, TaperedBody, TwistedPrism
+from service.parts.geometry.cut_solids import ConeCut, Cut, CutBody
+from service.parts.geometry.regions import Disc, Loop, Outline, Region, find_arc_middle, move_outline
+from service.parts.geometry.solids import Body, Mesh, Prism, TaperedBody, TwistedPrism
 from service.parts.geometry.splines import Curve
 
 if TYPE_CHECKING:
@@ -239,10 +239,6 @@ def _make_body(body: Body) -> Shape:
         return b3d.extrude(_make_face(body.region), amount=body.high - body.low, dir=(0, 0, 1)).moved(
             _shift_up(body.low)
         )
-    if isinstance(body, RevolvedBody):
-        axis = b3d.Axis((body.centre.real, body.centre.imag, 0.0), (0, 0, 1))
-        corners = [(body.centre.real + z.real, body.centre.imag, z.imag) for z in body.profile]
-        return b3d.Solid.revolve(b3d.Face(b3d.Wire.make_polygon(corners)), 360.0, axis)
     if isinstance(body, TaperedBody):
         return _make_tapered(body)
     if isinstance(body, CutBody):
@@ -293,7 +289,7 @@ def _make_tapered(body: TaperedBody) -> Solid:
     sewing.Perform()
     closed = BRepBuilderAPI_MakeSolid(TopoDS.Shell(sewing.SewedShape())).Solid()
     BRepLib.OrientClosedSolid_s(closed)
-    return b3d.Solid(closed).clean().moved(b3d.Location((body.centre.real, body.centre.imag, 0.0)))
+    return b3d.Solid(closed).clean()
 
 
 def _make_pitch_faces(body: TaperedBody) -> list[Face]:
@@ -307,15 +303,13 @@ def _make_pitch_faces(body: TaperedBody) -> list[Face]:
     assert isinstance(outline, Loop)
     count = len(outline.corners) // body.teeth
     # From the start of the first pitch to that of the second, and to the axis.
-    corners = (*(z - body.centre for z in outline.corners[: count + 1]), 0j)
+    corners = (*outline.corners[: count + 1], 0j)
     sector = Loop(corners, (*outline.bulges[:count], 0.0, 0.0))
     # Extend slightly beyond both ends, so that no face of the cone coincides with one of the body's.
     beyond = CONE_EXTENSION * (body.high - body.low)
     wires = []
     for height in (body.low - beyond, body.high + beyond):
-        wires.append(
-            _make_wire(scale_outline(sector, float(body.scale(np.array(height))), 0j)).moved(_shift_up(height))
-        )
+        wires.append(_make_wire(move_outline(sector, float(body.scale(np.array(height))))).moved(_shift_up(height)))
     half_section = b3d.Face(b3d.Wire.make_polygon([(z.real, 0.0, z.imag) for z in body.profile]))
     turned = b3d.Solid.revolve(half_section, 360.0 / body.teeth, b3d.Axis.Z)
     turned = turned.moved(b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, _find_pitch_start(body))))
@@ -341,7 +335,7 @@ def _find_pitch_start(body: TaperedBody) -> float:
     """Return where the first pitch begins, degrees."""
     outline = body.section.outer
     assert isinstance(outline, Loop)
-    return float(np.degrees(np.angle(outline.corners[0] - body.centre)))
+    return float(np.degrees(np.angle(outline.corners[0])))
 
 
 def _make_cut_body(body: CutBody) -> Solid:
@@ -358,24 +352,14 @@ def _make_tool(cut: Cut, far: float) -> Shape:
     """Return the solid that a cut removes, up to a distance from the origin."""
     import build123d as b3d
 
-    if isinstance(cut, BoreCut):
-        return b3d.extrude(_make_face(Region(cut.outline)), amount=far, dir=(0, 0, 1))
-    if isinstance(cut, SlotCut):
-        across, _, along = cut.axes.tolist()
-        section: Outline = Disc(0j, cut.half)
-        # An open slot extends the cylinder downwards by a rectangle.
-        if cut.open:
-            corners = complex(cut.half, -far), complex(cut.half), complex(-cut.half), complex(-cut.half, -far)
-            section = Loop(corners, (0.0, 1.0, 0.0, 0.0))
-        place = b3d.Location(b3d.Plane((0.0, 0.0, 0.0), x_dir=tuple(across), z_dir=tuple(along)))
-        return b3d.extrude(_make_face(Region(section)), amount=far, dir=(0, 0, 1)).moved(place)
-    c, s = float(np.cos(cut.azimuth)), float(np.sin(cut.azimuth))
-    if isinstance(cut, HalfSpaceCut):
-        box = (-far + 1j * far, -far - 1j * far, cut.distance - 1j * far, cut.distance + 1j * far)
-        outline = Loop(tuple(z * complex(c, s) for z in box), (0.0,) * 4)
-        return b3d.extrude(_make_face(Region(outline)), amount=far, dir=(0, 0, 1))
-    plane = b3d.Plane((0.0, 0.0, 0.0), x_dir=(0.0, 0.0, 1.0), z_dir=(c, s, 0.0))
-    return b3d.Solid.make_cone(0.0, far * float(np.tan(cut.angle)), far, plane)
+    across, _, along = (
+        tuple(axis) for axis in (cut.axes if isinstance(cut, ConeCut) else cut.make_tool(far).axes).tolist()
+    )
+    plane = b3d.Plane((0.0, 0.0, 0.0), x_dir=across, z_dir=along)
+    if isinstance(cut, ConeCut):
+        return b3d.Solid.make_cone(0.0, far * float(np.tan(cut.angle)), far, plane)
+    section = _make_face(Region(cut.make_tool(far).outline))
+    return b3d.extrude(section, amount=far, dir=(0, 0, 1)).moved(b3d.Location(plane))
 
 
 def _build_mesh_solid(body: Mesh) -> Solid:

@@ -24,16 +24,16 @@ from service.parts.export.viewer_schema import (
     Point,
     PrismShape,
     Shape,
-    TurnedShape,
     TwistedShape,
 )
-from service.parts.geometry.cut_solids import CutBody
+from service.parts.geometry.meshed_body import MeshedBody
+from service.parts.geometry.meshes import DISPLAY_SAG, read_triangles
 from service.parts.geometry.regions import Disc, Outline
-from service.parts.geometry.solids import Body, Mesh, Prism, RevolvedBody, TaperedBody, TwistedPrism
+from service.parts.geometry.solids import Body, Prism, TwistedPrism
 from service.parts.geometry.splines import Curve
 
-MERGE_DECIMALS = 6
-"""Decimals of a millimetre to which corners of displayed triangles are merged."""
+DECIMALS = 6
+"""Decimals of a millimetre in corners of displayed triangles."""
 
 MIN_TRACKED_INPUTS = 2880
 """Minimum number of inputs in the tracking of angles, so that full turns are counted correctly."""
@@ -182,16 +182,9 @@ def _make_part_view(part: Part, carrier: int, item: str, lift: float) -> PartVie
 
 
 def _make_shape(body: Body) -> Shape:
-    if isinstance(body, RevolvedBody):
-        return TurnedShape(centre=_to_pair(body.centre), profile=[_to_pair(corner) for corner in body.profile])
-    if isinstance(body, CutBody):
-        found, numbers = np.unique(np.round(body.facets.reshape(-1, 3), MERGE_DECIMALS), axis=0, return_inverse=True)
-        return MeshShape(corners=found.tolist(), triangles=numbers.reshape(-1, 3).tolist())
-    if isinstance(body, TaperedBody):
-        body = body.mesh
-    if isinstance(body, Mesh):
-        corners = [(float(x), float(y), float(z)) for x, y, z in body.corners]
-        return MeshShape(corners=corners, triangles=body.triangles.tolist())
+    if isinstance(body, MeshedBody):
+        corners, triangles = read_triangles(body.make_mesh(DISPLAY_SAG))
+        return MeshShape(corners=np.round(corners, DECIMALS).tolist(), triangles=triangles.tolist())
     region = body.section if isinstance(body, TwistedPrism) else body.region
     low, high = body.low, body.high
     outer, holes = _make_edge(region.outer), [_make_edge(hole) for hole in region.holes]

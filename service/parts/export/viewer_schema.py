@@ -71,16 +71,6 @@ class TwistedShape(UprightShape):
     centre: Point = Field(description="Centre of the rotation.")
 
 
-class TurnedShape(BaseModel):
-    """A body of revolution about an upright axis."""
-
-    model_config = ConfigDict(title="Turned body of a part")
-
-    form: Literal["turned"] = "turned"
-    centre: Point
-    profile: list[Point] = Field(description="Half section: radius and height of its corners, counter-clockwise.")
-
-
 class MeshShape(BaseModel):
     """A body given by its surface."""
 
@@ -93,7 +83,7 @@ class MeshShape(BaseModel):
     )
 
 
-Shape = Annotated[PrismShape | TurnedShape | TwistedShape | MeshShape, Field(discriminator="form")]
+Shape = Annotated[PrismShape | TwistedShape | MeshShape, Field(discriminator="form")]
 
 
 class PartView(BaseModel):

@@ -49,22 +49,13 @@ class Region(NamedTuple):
     holes: tuple[Outline, ...] = ()
 
 
-def rotate_outline(outline: Outline, turn: complex, about: complex) -> Outline:
-    """Rotate an outline about a point by a unit complex number."""
+def move_outline(outline: Outline, turn: complex, shift: complex = 0j) -> Outline:
+    """Rotate and scale an outline about 0 by a complex number, then shift it."""
     if isinstance(outline, Disc):
-        return Disc(about + turn * (outline.centre - about), outline.radius)
+        return Disc(turn * outline.centre + shift, abs(turn) * outline.radius)
     if isinstance(outline, Curve):
-        return Curve(tuple(about + turn * (z - about) for z in outline.points))
-    return Loop(tuple(about + turn * (z - about) for z in outline.corners), outline.bulges)
-
-
-def scale_outline(outline: Outline, scale: float, about: complex) -> Outline:
-    """Scale an outline about a point."""
-    if isinstance(outline, Disc):
-        return Disc(about + scale * (outline.centre - about), scale * outline.radius)
-    if isinstance(outline, Curve):
-        return Curve(tuple(about + scale * (z - about) for z in outline.points))
-    return Loop(tuple(about + scale * (z - about) for z in outline.corners), outline.bulges)
+        return Curve(tuple(turn * z + shift for z in outline.points))
+    return Loop(tuple(turn * z + shift for z in outline.corners), outline.bulges)
 
 
 def make_ring(centre: complex, outer: float, inner: float = 0.0) -> Region:
@@ -138,7 +129,7 @@ def make_polygon(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Co
     if isinstance(outline, Curve):
         return outline.make_polygon(beyond=beyond)
     if isinstance(outline, Disc):
-        edges = _count_edges(outline.radius, sag)
+        edges = count_edges(outline.radius, sag)
         # Circumscribed polygons have their corners outside by 1/cos of half the step.
         half = math.pi / edges
         radius = outline.radius / math.cos(half) if beyond else outline.radius
@@ -150,7 +141,7 @@ def make_polygon(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Co
         if bulge == 0.0:
             continue
         centre, angle = find_arc(start, end, bulge)
-        count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * _count_edges(abs(start - centre), sag)))
+        count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * count_edges(abs(start - centre), sag)))
         # Tangents at the middle of each step lie outside the arc's circle, chords inside. The enclosed area is inside
         # the circle if the arc turns to the left.
         tangent = beyond == (bulge > 0.0)
@@ -161,7 +152,7 @@ def make_polygon(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Co
     return np.array(pieces)
 
 
-def _count_edges(radius: float, sag: float) -> int:
+def count_edges(radius: float, sag: float) -> int:
     """Return the number of edges of a polygon that approximates a circle within a sag."""
     return max(SEGMENTS_PER_TURN, math.ceil(math.pi / math.sqrt(2.0 * sag / radius)))
 

@@ -45,7 +45,6 @@ export class Surface {
   add(shape) {
     if (shape.form === "prism") this.addPrism(shape, 0, [0, 0]);
     else if (shape.form === "twisted") this.addPrism(shape, (shape.twist * Math.PI) / 180, shape.centre);
-    else if (shape.form === "turned") this.addRevolution(shape);
     else this.addMesh(shape);
   }
 
@@ -134,35 +133,6 @@ export class Surface {
       const before = outline[(k + outline.length - 1) % outline.length].out[1];
       if (out[0][0] * before[0] + out[0][1] * before[1] < Math.cos(CREASE_ANGLE))
         this.edges.push(...from, below.height, ...from, above.height);
-    });
-  }
-
-  /** @param {Shape} shape */
-  addRevolution({ profile, centre }) {
-    const around = Array.from({ length: CIRCLE_PIECES + 1 }, (_, k) => (2 * Math.PI * k) / CIRCLE_PIECES).map(
-      (angle) => [Math.cos(angle), Math.sin(angle)],
-    );
-    profile.forEach(([r, z], n) => {
-      const [s, t] = profile[(n + 1) % profile.length];
-      const long = Math.hypot(s - r, t - z);
-      if (long === 0 || (r === 0 && s === 0)) return;
-      const [flat, up] = [(t - z) / long, (r - s) / long];
-      for (let k = 0; k < CIRCLE_PIECES; k++) {
-        const [[c, d], [e, f]] = [around[k], around[k + 1]];
-        /** @type {[number, number, number[]][]} */
-        const quad = [
-          [r, z, [c, d]],
-          [r, z, [e, f]],
-          [s, t, [e, f]],
-          [r, z, [c, d]],
-          [s, t, [e, f]],
-          [s, t, [c, d]],
-        ];
-        for (const [radius, height, [x, y]] of quad) {
-          this.addCorner(centre[0] + radius * x, centre[1] + radius * y, height, flat * x, flat * y, up);
-        }
-        if (r > 0) this.edges.push(centre[0] + r * c, centre[1] + r * d, z, centre[0] + r * e, centre[1] + r * f, z);
-      }
     });
   }
 

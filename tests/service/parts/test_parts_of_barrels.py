@@ -18,6 +18,7 @@ from service.parts.assembly.model import Assembly
 from service.parts.assembly.sizes import PartsQuery
 from service.parts.cam.barrel import BarrelMotion
 from service.parts.cam.barrel_groove import Groove
+from service.parts.drawings.depth_buffer import draw_rendered_sheet
 from service.parts.geometry.regions import Disc, make_ring
 from service.parts.geometry.solids import Mesh, Prism
 from service.parts.registry import make_parts
@@ -76,6 +77,14 @@ def test_the_barrel_is_a_closed_surface_and_moves_across_the_follower() -> None:
     assert placed["barrel"].frame is placed["upright_1"].frame
     assert placed["follower"].frame is None
     assert placed["follower"].shift.imag == pytest.approx(0.0)
+
+
+@pytest.mark.slow
+def test_the_pictures_lie_on_their_panels() -> None:
+    picture = ElementTree.fromstring(draw_rendered_sheet(assembly(), "A barrel", 0.0))
+    drawn = [(element.tag.rpartition("}")[2], element.get("data-panel")) for element in picture]
+    images = [n for n, (tag, _) in enumerate(drawn) if tag == "image"]
+    assert [drawn[n - 1] for n in images] == [("g", "seen_1"), ("g", "seen_2")]
 
 
 @pytest.mark.campaign

@@ -12,7 +12,7 @@ from kinematics.linkage.planar.catalogue import make_geared_fivebar
 from kinematics.linkage.planar.mechanism import GearPair
 from service.parts.assembly.interference import find_overlaps
 from service.parts.assembly.sizes import PartsQuery
-from service.parts.geometry.regions import Region, rotate_outline
+from service.parts.geometry.regions import Region, move_outline
 from service.parts.geometry.solids import Prism
 from service.parts.linkage.gears import find_teeth, make_pair_wheels
 from service.parts.registry import NotMade, make_parts
@@ -36,7 +36,8 @@ def test_gears_turn_with_their_links_and_would_bite_in_any_other_phase(ratio: fl
     gear = gears["gear_of_output"]
     (body,) = gear.bodies
     assert isinstance(body, Prism)
-    moved = rotate_outline(body.region.outer, np.exp(1j * math.pi / 18.0), 60.0 + 0.0j)
+    turn = complex(np.exp(1j * math.pi / 18.0))
+    moved = move_outline(body.region.outer, turn, 60.0 * (1.0 - turn))
     bitten = replace(gear, bodies=(body._replace(region=Region(moved, body.region.holes)),))
     changed = replace(whole, parts=tuple(bitten if part is gear else part for part in whole.parts))
     assert find_overlaps(whole) == []
