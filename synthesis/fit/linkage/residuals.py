@@ -2,12 +2,13 @@
 
 A target is a row (kind, i, j, a, b, root, slot, free):
 
-======= =================================================================================================
-kind    residuals
-======= =================================================================================================
-PLACE   node i minus (a, b), two rows
-TURN    rotation of the direction from node i to node j since the reference position, minus a, one row
-======= =================================================================================================
+========= =================================================================================================
+kind      residuals
+========= =================================================================================================
+PLACE     node i minus (a, b), two rows
+TURN      rotation of the direction from node i to node j since the reference position, minus a, one row
+DIRECTION angle of the direction from node i to node j, minus a, one row
+========= =================================================================================================
 
 They are multiplied by ``root``, the root of a weight. Targets of one slot are consecutive and share an input. A free
 input is eliminated: for each linkage it is moved to the position with the least squares of its slot, by Gauss–Newton
@@ -55,7 +56,7 @@ from synthesis.fit.linkage.setting import BACK, FULL_TURN, POINT_NODE, STEPS, WI
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
-PLACE, TURN = 0, 1
+PLACE, TURN, DIRECTION = range(3)
 """Kinds of targets."""
 
 KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE = range(8)
@@ -100,9 +101,10 @@ def _measure_slot(
                 tangent[m] = root * rates[i, axis]
                 m += 1
         else:
-            j = int(targets[t, SECOND_NODE])
+            j, hx, hy = int(targets[t, SECOND_NODE]), 1.0, 0.0
             gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+            if targets[t, KIND] == TURN:
+                hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
             off = math.atan2(hx * gy - hy * gx, hx * gx + hy * gy) - targets[t, X]
             # Rotations are compared modulo full turns.
             off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
@@ -155,17 +157,19 @@ def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Re
         else:
             j = int(targets[t, SECOND_NODE])
             gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
-            per, by_reference = root / (gx * gx + gy * gy), root / (hx * hx + hy * hy)
+            per = root / (gx * gx + gy * gy)
             rows[m] = 0.0
             for c in range(count):
                 dx, dy = slopes[j, 0, 1 + c] - slopes[i, 0, 1 + c], slopes[j, 1, 1 + c] - slopes[i, 1, 1 + c]
                 rows[m, c] = per * (gx * dy - gy * dx)
-            # The reference direction rotates with the unknowns, too.
-            rows[m, 2 * j] += by_reference * hy
-            rows[m, 2 * j + 1] -= by_reference * hx
-            rows[m, 2 * i] -= by_reference * hy
-            rows[m, 2 * i + 1] += by_reference * hx
+            if targets[t, KIND] == TURN:
+                # The reference direction rotates with the unknowns, too.
+                hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+                by_reference = root / (hx * hx + hy * hy)
+                rows[m, 2 * j] += by_reference * hy
+                rows[m, 2 * j + 1] -= by_reference * hx
+                rows[m, 2 * i] -= by_reference * hy
+                rows[m, 2 * i + 1] += by_reference * hx
             m += 1
 
 
