@@ -18,6 +18,7 @@ import numpy as np
 from kinematics.arrays import Complex, Real
 from synthesis.fit.linkage.margins import EQUATION_COUNT, count_margins
 from synthesis.fit.linkage.residuals import (
+    CARRIED,
     DIRECTION,
     FIRST_NODE,
     FREE,
@@ -27,7 +28,6 @@ from synthesis.fit.linkage.residuals import (
     SECOND_NODE,
     SLOT,
     TARGET_SIZE,
-    TURN,
     X,
     Y,
     compute_linkage_rows,
@@ -90,8 +90,8 @@ class FitTask:
     Attributes
     ----------
     targets : float, shape (targets, 8)
-        Targets of the traced point (PLACE), the input (TURN) and the output (DIRECTION), each of any node: a topology
-        has its own. See :func:`build_point_targets` and :func:`build_function_targets`.
+        Targets of the traced point (PLACE) and the output (DIRECTION, CARRIED), each of any node: a topology has its
+        own. See :func:`build_point_targets` and :func:`build_function_targets`.
     pack_limits : callable
         Returns the setting of a topology with the limits on its linkages.
     full_turn : bool
@@ -123,8 +123,8 @@ class FitTask:
         targets, setting = self.targets.copy(), self.pack_limits(topology).copy()
         for kind, ends in (
             (PLACE, (topology.point, 0)),
-            (TURN, topology.get_direction("input")),
             (DIRECTION, topology.get_direction("output")),
+            (CARRIED, (topology.triad[0] if topology.triad else 0, topology.fixed_pivots[0])),
         ):
             targets[targets[:, KIND] == kind, FIRST_NODE : SECOND_NODE + 1] = ends
         setting[FULL_TURN], setting[STEPS], setting[BACK] = self.full_turn, self.steps, self.back
@@ -132,22 +132,21 @@ class FitTask:
         return targets, setting
 
 
-def build_function_targets(inputs: Real, outputs: Real, roots: Real, input_root: float | None = None) -> Real:
+def build_function_targets(inputs: Real, outputs: Real, roots: Real, length_root: float | None = None) -> Real:
     """Return rows of targets for the directions of the output at inputs (m,), radians from the reference position.
 
     The whole linkage turns freely, so that outputs (m,) may count from any direction. ``roots`` (m,) are roots of their
-    weights. If another link than the input drives the linkage, its input is free, and the rotations of the input link
-    are targets, too, with the root ``input_root`` of their weight.
+    weights. A linkage that is seen from its input link carries the ground; the length of its output, too, is a target,
+    with the root ``length_root`` of its weight.
     """
     m = len(inputs)
     targets = np.zeros((m, TARGET_SIZE))
-    targets[:, KIND], targets[:, X], targets[:, ROOT], targets[:, SLOT] = DIRECTION, outputs, roots, range(m)
-    if input_root is None:
-        return targets
-    targets[:, FREE] = 1.0
-    turns = targets.copy()
-    turns[:, KIND], turns[:, X], turns[:, ROOT] = TURN, inputs, input_root
-    return np.stack([turns, targets], axis=1).reshape(2 * m, TARGET_SIZE)
+    targets[:, ROOT], targets[:, SLOT] = roots, range(m)
+    if length_root is None:
+        targets[:, KIND], targets[:, X] = DIRECTION, outputs
+    else:
+        targets[:, KIND], targets[:, X], targets[:, Y], targets[:, FREE] = CARRIED, inputs, outputs, length_root
+    return targets
 
 
 def build_point_targets(points: Complex, weights: Real) -> Real:

@@ -23,6 +23,7 @@ the joints as the ground sees them. It is driven by link 3, relative to the inpu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -80,7 +81,7 @@ class Topology:
         found = [pair for pins in self.links.values() for pair in combinations(pins, 2)]
         return np.array(found, np.int64)
 
-    @property
+    @cached_property
     def pin_names(self) -> dict[int, str]:
         """Names of the joints by the nodes in :attr:`links`, which are not their views."""
         return {int(self.nodes[k, 1] if self.nodes[k, 0] == VIEW else k): name for name, k in self.joints.items()}
@@ -185,16 +186,16 @@ def build_stephenson_2(body: str, *, traces: bool = True) -> Topology:
     ground O4 O2 are a dyad.
     """
     a, b, c, d, e, o2, o4, p = range(8)
-    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, a), (FIXED,), (DYAD, b, c), (POINT, b, d), (FIXED,), (DYAD, e, o2)]
-    moving = {"A": a, "B": b, "C": c, "D": d, "E": e}
+    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, a), (FIXED,), (DYAD, b, c), (POINT, b, d), (FIXED,)]
+    seen = {"A": a, "B": b, "C": c, "D": d, "E": e}
     if traces:
-        rows.append((POINT, *STEPHENSON_2_BODIES[body]))
-        moving["P"] = p
+        rows += [(DYAD, e, o2), (POINT, *STEPHENSON_2_BODIES[body])]
+        moving = seen | {"P": p}
+        rows += [(VIEW, node, o2, o4) for node in moving.values()]
+        seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
     else:
-        # The pivot of the output, whose direction the input link sees turned.
-        moving["O4"] = o4
-    rows += [(VIEW, node, o2, o4) for node in moving.values()]
-    seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
+        # Targets carry the ground along: link 3 may turn back, where ground and output are in line.
+        rows.append((FIXED,))
     links = {"ground": (o2, o4), "input": (o2, a, c), "link_3": (a, b), "link_4": (b, d, e), "link_5": (c, d)}
     return Topology(
         nodes=_pad_rows(rows),

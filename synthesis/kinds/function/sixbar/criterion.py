@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Integers, Mask, Real
-from synthesis.fit.linkage.topology import VIEW, Topology
+from synthesis.fit.linkage.topology import Topology
 from synthesis.kinds.function.fourbar.constraints import GeneratorLimits
 from synthesis.kinds.function.fourbar.minimax_descent import Descent
 from synthesis.kinds.function.fourbar.structural_error import PARAMETER_COUNT
@@ -26,8 +26,9 @@ from synthesis.kinds.function.sixbar.fits import SixbarCandidate, evaluate_error
 CONVERGED_ERROR = 5e-9
 """Maximum error, radians, that counts as zero: 0.3 millionths of a degree. No further improvement is useful."""
 
-MAX_ROUNDS, MAX_SQUARE_ROUNDS = 60, 15
-"""Maximum number of steps: linear programs, and a third of the number of quadratic ones."""
+MAX_ROUNDS, MAX_LAST_ROUNDS, MAX_SQUARE_ROUNDS = 25, 300, 15
+"""Maximum number of steps: linear programs for each sixbar, and for the best; a third of the number of quadratic ones.
+"""
 
 LIMIT_STEPS = 49
 """Number of equal steps of the input at which the constraints are limits."""
@@ -43,9 +44,16 @@ SCALE_STEP = 1e-6
 
 
 def optimize_sixbar(
-    task: FunctionTask, one: SixbarCandidate, dense: Real, pack_limits: Callable[[Topology], Real]
+    task: FunctionTask,
+    one: SixbarCandidate,
+    dense: Real,
+    pack_limits: Callable[[Topology], Real],
+    rounds: int = MAX_ROUNDS,
 ) -> SixbarCandidate:
-    """Optimise a sixbar by the criterion under all constraints, at inputs and outputs ``dense`` (2, n)."""
+    """Optimise a sixbar by the criterion under all constraints, at inputs and outputs ``dense`` (2, n).
+
+    ``rounds`` is the maximum number of linear programs.
+    """
     evaluated = evaluate_errors(one, *dense)
     if evaluated is None:
         return replace(one, error=math.inf)
@@ -57,18 +65,17 @@ def optimize_sixbar(
     square = task.problem.aim == "least_squares"
     columns = len(one.fit.x), len(one.fit.x) + 1
     free = np.concatenate([list_free_coordinates(one), task.free[5:]])
-    descent = Descent(
-        task, SixbarFollower(one, *dense), SixbarLimits(task, one, dense[0], pack_limits, every=square), free, columns
-    )
+    follower = SixbarFollower(one, *dense, scales_input=bool(task.free[5]))
+    descent = Descent(task, follower, SixbarLimits(task, one, dense[0], pack_limits, every=square), free, columns)
     improve = descent.least_squares if square else descent.minimax
-    done = improve(_encode(one), 1.0, MAX_SQUARE_ROUNDS if square else MAX_ROUNDS)
+    done = improve(_encode(one), 1.0, MAX_SQUARE_ROUNDS if square else rounds)
     return replace(_decode(one, done.generator), error=done.error)
 
 
 def list_free_coordinates(one: SixbarCandidate) -> Mask:
-    """Return which unknowns change the function: not those of views, nor those that only place the linkage."""
+    """Return which unknowns change the function: not those that only place the linkage."""
     topology, x = one.topology, one.fit.x
-    free = np.repeat(topology.nodes[:, 0] != VIEW, 2)
+    free = np.full(len(x), True)
     first, second, *others = topology.fixed_pivots
     # Place and size: the first pivot, and the larger distance from it to the second.
     free[2 * first : 2 * first + 2] = False
@@ -90,14 +97,17 @@ def _decode(one: SixbarCandidate, generator: Real) -> SixbarCandidate:
 
 
 class SixbarFollower:
-    """Sixbars of one type in one assembly, evaluated at common, increasing inputs."""
+    """Sixbars of one type in one assembly, evaluated at common, increasing inputs.
 
-    def __init__(self, one: SixbarCandidate, inputs: Real, outputs: Real) -> None:
-        self.one, self.inputs, self.outputs = one, inputs, outputs
+    ``scales_input`` states whether steps change the scale of the input.
+    """
+
+    def __init__(self, one: SixbarCandidate, inputs: Real, outputs: Real, *, scales_input: bool = True) -> None:
+        self.one, self.inputs, self.outputs, self.scales_input = one, inputs, outputs, scales_input
 
     def some(self, rows: NDArray[np.int64]) -> SixbarFollower:
         """Return the sixbars at selected inputs."""
-        return SixbarFollower(self.one, self.inputs[rows], self.outputs[rows])
+        return SixbarFollower(self.one, self.inputs[rows], self.outputs[rows], scales_input=self.scales_input)
 
     def errors(self, dimensions: Real, _signs: Real) -> Real:
         """Return errors of sixbars (k, n): shape (k, inputs), NaN if not assembled."""
@@ -107,11 +117,12 @@ class SixbarFollower:
         """Return derivatives of one sixbar's errors by its steps: shape (inputs, n)."""
         _, slopes = self._evaluate(dimensions)
         by_k, (k, l_) = np.zeros(len(self.inputs)), dimensions[-2:]
-        ends = [dimensions.copy(), dimensions.copy()]
-        for end, side in zip(ends, (1.0, -1.0), strict=True):
-            end[-2] = k * (1.0 + side * SCALE_STEP)
-        above, below = (self._evaluate(end)[0] for end in ends)
-        by_k = (above - below) / (2.0 * SCALE_STEP)
+        if self.scales_input:
+            ends = [dimensions.copy(), dimensions.copy()]
+            for end, side in zip(ends, (1.0, -1.0), strict=True):
+                end[-2] = k * (1.0 + side * SCALE_STEP)
+            above, below = (self._evaluate(end)[0] for end in ends)
+            by_k = (above - below) / (2.0 * SCALE_STEP)
         return np.column_stack([slopes, np.where(np.isfinite(by_k), by_k, 0.0), -l_ * self.outputs])
 
     def _evaluate(self, generator: Real) -> tuple[Real, Real]:

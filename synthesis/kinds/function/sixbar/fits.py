@@ -38,6 +38,10 @@ SETTLED_INPUT, MAX_SETTLING_CALLS = 1e-12, 20
 """Last step of a settled input, radians, and maximum number of evaluations that settle it."""
 
 
+pack_unlimited = cache(pack_topology)
+"""Pack a topology with no limits, once; do not change the result."""
+
+
 @dataclass(frozen=True, eq=False)
 class SixbarCandidate:
     """A candidate sixbar.
@@ -122,17 +126,20 @@ def build_fit_task(
     topology: Topology, rotations: Real, outputs: Real, roots: Real, pack_limits: Callable[[Topology], Real], steps: int
 ) -> FitTask:
     """Build the fit of one topology to outputs at rotations of the input, both (m,) in radians."""
-    input_root = float(roots.max()) if topology.triad else None
-    targets = build_function_targets(rotations, outputs, roots, input_root)
-    return FitTask(targets, pack_limits, full_turn=False, steps=steps)
+    if not topology.triad:
+        targets = build_function_targets(rotations, outputs, roots)
+        return FitTask(targets, pack_limits, full_turn=False, steps=steps)
+    # A linkage that carries its ground is constrained at its targets.
+    targets = build_function_targets(rotations, outputs, roots, float(roots.max()))
+    return FitTask(targets, pack_limits, full_turn=False, steps=len(rotations) if steps > 0 else 0)
 
 
 def _build_exact_task(
     one: SixbarCandidate, inputs: Real, outputs: Real, pack_limits: Callable[[Topology], Real], steps: int
 ) -> FitTask:
-    """Build a task whose input is exact: the output alone has errors, of weight :data:`SMALL_ROOT` squared."""
-    roots, input_root = np.full(len(inputs), SMALL_ROOT), 1.0 if one.topology.triad else None
-    targets = build_function_targets(one.compute_rotations(inputs), one.scales[1] * outputs, roots, input_root)
+    """Build a task whose linkage is closed: the output alone has errors, of weight :data:`SMALL_ROOT` squared."""
+    roots, length_root = np.full(len(inputs), SMALL_ROOT), 1.0 if one.topology.triad else None
+    targets = build_function_targets(one.compute_rotations(inputs), one.scales[1] * outputs, roots, length_root)
     return FitTask(targets, pack_limits, full_turn=False, steps=steps)
 
 
@@ -141,7 +148,7 @@ def evaluate_errors(one: SixbarCandidate, inputs: Real, outputs: Real) -> tuple[
 
     None if the sixbar cannot be assembled at one of them.
     """
-    inverted, task = bool(one.topology.triad), _build_exact_task(one, inputs, outputs, pack_topology, 0)
+    inverted, task = bool(one.topology.triad), _build_exact_task(one, inputs, outputs, pack_unlimited, 0)
     thetas = np.interp(inputs, one.inputs, one.fit.inputs) if inverted else one.compute_rotations(inputs)
     fit = one.fit._replace(inputs=np.ascontiguousarray(thetas))
     for _ in range(MAX_SETTLING_CALLS):
@@ -151,7 +158,7 @@ def evaluate_errors(one: SixbarCandidate, inputs: Real, outputs: Real) -> tuple[
         before, fit = fit.inputs, fit._replace(inputs=rows.inputs)
         if not inverted:
             return fit, rows.residuals / SMALL_ROOT, rows.jacobian / SMALL_ROOT
-        # Residuals alternate between input and output.
+        # Residuals alternate between the output's length and its direction.
         if np.abs(rows.inputs - before).max() < SETTLED_INPUT:
             return fit, rows.residuals[1::2] / SMALL_ROOT, rows.jacobian[1::2] / SMALL_ROOT
     return None
@@ -161,12 +168,13 @@ def evaluate_margins(
     one: SixbarCandidate, ends: Real, pack_limits: Callable[[Topology], Real], steps: int
 ) -> FitRows | None:
     """Return the margins of a sixbar at equal steps between two inputs; None if it cannot be assembled there."""
-    evaluated = evaluate_errors(one, ends, np.zeros(2))
-    return (
-        None
-        if evaluated is None
-        else evaluate_rows(evaluated[0], _build_exact_task(one, ends, np.zeros(2), pack_limits, steps))
-    )
+    # A linkage that carries its ground is constrained at its targets.
+    inputs = np.linspace(ends[0], ends[1], steps) if one.topology.triad else ends
+    zeros = np.zeros(len(inputs))
+    evaluated = evaluate_errors(one, inputs, zeros)
+    if evaluated is None:
+        return None
+    return evaluate_rows(evaluated[0], _build_exact_task(one, inputs, zeros, pack_limits, steps))
 
 
 def measure_motion(one: SixbarCandidate, inputs: Real) -> SixbarMotion | None:
@@ -178,4 +186,11 @@ def measure_motion(one: SixbarCandidate, inputs: Real) -> SixbarMotion | None:
     nodes, m = one.topology.nodes, len(inputs)
     places, cosines = np.empty((m, len(nodes), 2)), np.zeros((m, len(nodes)))
     trace_linkage(nodes, one.fit.x, evaluated[0].inputs, places, cosines)
-    return SixbarMotion(places[..., 0] + 1j * places[..., 1], cosines[:, one.topology.transmitting])
+    joints = places[..., 0] + 1j * places[..., 1]
+    if one.topology.triad:
+        # The input link sees all joints; the ground sees those that are not its own turned with it.
+        first, second = one.topology.fixed_pivots
+        pivot, ground = joints[:, first, None].copy(), joints[:, second].copy()
+        joints = pivot + np.exp(1j * one.compute_rotations(inputs))[:, None] * (joints - pivot)
+        joints[:, second] = ground
+    return SixbarMotion(joints, cosines[:, one.topology.transmitting])

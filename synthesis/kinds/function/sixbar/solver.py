@@ -40,7 +40,7 @@ from synthesis.fit.linkage.setting import RATIO
 from synthesis.fit.linkage.topology import FUNCTION_SIXBARS, Topology
 from synthesis.kinds.function.fourbar.task import FunctionTask
 from synthesis.kinds.function.nine_pairs.system import PAIR_COUNT, SOLUTION_COUNT
-from synthesis.kinds.function.sixbar.criterion import optimize_sixbar
+from synthesis.kinds.function.sixbar.criterion import MAX_LAST_ROUNDS, MAX_ROUNDS, optimize_sixbar
 from synthesis.kinds.function.sixbar.fits import (
     SixbarCandidate,
     build_fit_task,
@@ -72,7 +72,7 @@ class Effort(NamedTuple):
 PAIR_EFFORT = Effort(3000, (150, 20), (75, 100), (16, 400), (8, 300), 32)
 """Effort of a batch to meet pairs."""
 
-FUNCTION_EFFORT = Effort(6000, (600, 40), (150, 60), (40, 150), (8, 200), 0)
+FUNCTION_EFFORT = Effort(6000, (300, 40), (100, 60), (24, 150), (8, 200), 96)
 """Effort to approximate a function, or to meet so few pairs that many sixbars do."""
 
 MIN_BATCHES, MAX_BATCHES, PROMISING_ERROR = 4, 16, 1e-3
@@ -87,6 +87,9 @@ START_ANGLE_SLACK = 8.0
 
 FEW_STEPS, ALL_STEPS = 12, 24
 """Number of equal steps of the input at which the constraints are penalties, at few and at all points."""
+
+BEST_COUNT = 2
+"""Number of sixbars whose maximum error is decreased to the end."""
 
 POOL_SIZE = 16
 """Number of sixbars from which the search goes on after a batch."""
@@ -213,9 +216,17 @@ class SixbarSearch:
         # All solutions through nine pairs are computed only if the search failed, since that takes many seconds.
         if follows and not (reached and reached[0].error < PAIR_TOLERANCE):
             reached = self._select_best([*self._solve_nine_pairs(rng, progress), *reached])
-        improved = [optimize_sixbar(self.task, one, self.points.dense, self.pack_limits) for one in reached]
+        improved = [self._optimize(one) for one in reached]
         improved.sort(key=lambda one: one.error)
+        if self.task.problem.function is not None:
+            # The maximum error of a function decreases slowly in the end, along a curved valley.
+            improved[:BEST_COUNT] = [self._optimize(one, MAX_LAST_ROUNDS) for one in improved[:BEST_COUNT]]
+            improved.sort(key=lambda one: one.error)
         return [one for one in improved if math.isfinite(one.error)]
+
+    def _optimize(self, one: SixbarCandidate, rounds: int = MAX_ROUNDS) -> SixbarCandidate:
+        """Optimise a sixbar by the criterion, by at most so many linear programs."""
+        return optimize_sixbar(self.task, one, self.points.dense, self.pack_limits, rounds)
 
     def _list_scales(self, rng: np.random.Generator) -> list[tuple[float, float]]:
         """Return pairs of scales: all given ones, or some of those within their limits."""

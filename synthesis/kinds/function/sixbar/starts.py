@@ -11,8 +11,8 @@ A Stephenson II is a fourbar on its input link, whose coupler point E carries th
 
     E(θ) = O2 + g e^{−iφ} + w e^{i(ψ−φ)},        φ the input,
 
-with g = O2 → O4 and w = O4 → E: linear in O2, g and w if the rotation θ of link 3 relative to the input link is
-proportional to φ, with a random ratio.
+with g = O2 → O4 and w = O4 → E: linear in O2, g and w if the rotation θ of link 3 relative to the input link is a
+random quadratic function of φ. In half of all Stephenson II it turns back.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants
 from synthesis.fit.linkage.descent import Fit
-from synthesis.fit.linkage.topology import VIEW, Topology
+from synthesis.fit.linkage.topology import Topology
 from synthesis.fit.triad_slant import find_min_slant
 
 SIZE_SPREAD = 0.5
 """Standard deviation of the logarithm of a linkage's size, in cranks."""
 
-MIN_RATE_LOG, MAX_RATE_LOG = -1.2, 1.2
+MIN_RATE_LOG, MAX_RATE_LOG = -2.5, 1.2
 """Range of the logarithm of the rotation of a Stephenson II's link 3 relative to the input, per rotation of the input.
 """
+
+BEND_SPREAD, BEND_SHARE = 0.4, 0.5
+"""Standard deviation of the quadratic coefficient of this rotation, per radian, and share of linkages that have one."""
 
 MIN_ARM, MAX_ARM = 0.05, 20.0
 """Range of the ground and the output of a Stephenson II, in standard deviations of its nodes."""
 
 MAX_STRETCH_COSINE = 0.98
 """Cosine up to which the dyad of a Stephenson II may be stretched, which does not transmit the force."""
-
-MIN_SLANT = 0.2
-"""Minimum sine of the angle between ground and output of a Stephenson II, which are a dyad on its input link."""
 
 MAX_TRIES = 200
 """Maximum number of linkages begun for each that is requested."""
@@ -196,10 +196,12 @@ def _draw_inverted(
         for k in range(2, inner):
             x[k] = rng.normal()
         rate = math.exp(rng.uniform(MIN_RATE_LOG, MAX_RATE_LOG)) * (1.0 if rng.random() < 0.5 else -1.0)
+        bend = BEND_SPREAD * rng.normal() if rng.random() < BEND_SHARE else 0.0
+        theta = inputs * (rate + bend * inputs)
         compute_constants(head, x, constants)
         closes, cosines[:] = True, 0.0
         for k in range(m):
-            closes = close_linkage(head, x, constants, rate * inputs[k], places, cosines)
+            closes = close_linkage(head, x, constants, theta[k], places, cosines)
             closes = closes and np.abs(cosines).max() <= MAX_STRETCH_COSINE
             if not closes:
                 break
@@ -209,26 +211,16 @@ def _draw_inverted(
         pivot, ground, arm = _carry_output(points, inputs, outputs)
         if not (MIN_ARM < abs(ground) < MAX_ARM and MIN_ARM < abs(arm) < MAX_ARM):
             continue
-        other, cost, least, most = pivot + ground, 0.0, np.inf, -np.inf
+        other, cost = pivot + ground, 0.0
         x[inner], x[inner + 1], x[inner + 2], x[inner + 3] = pivot.real, pivot.imag, other.real, other.imag
-        for k in range(n):
-            if nodes[k, 0] == VIEW:
-                source = nodes[k, 1]
-                x[2 * k], x[2 * k + 1] = x[2 * source], x[2 * source + 1]
         for k in range(m):
             back = complex(math.cos(inputs[k]), -math.sin(inputs[k]))
             turned = arm * complex(math.cos(outputs[k]), math.sin(outputs[k]))
             cost += 0.5 * abs(points[k] - pivot - back * (ground + turned)) ** 2 / m
-            # Sine of the angle between ground and output, which divides the error of E.
-            sine = (ground.conjugate() * turned).imag / (abs(ground) * abs(arm))
-            least, most = min(least, sine), max(most, sine)
-        slant = max(least, -most)
-        if not slant > MIN_SLANT:
+        costs[drawn] = cost / abs(arm) ** 2
+        if not _transmits(nodes, x, theta, inputs, cosine):
             continue
-        costs[drawn] = cost / (slant * min(abs(ground), abs(arm))) ** 2
-        if not _transmits(nodes, x, rate, inputs, cosine):
-            continue
-        thetas[drawn] = rate * inputs
+        thetas[drawn] = theta
         # Turned so that the output is at its zero.
         turned = arm.conjugate() / abs(arm)
         for k in range(n):
@@ -239,19 +231,22 @@ def _draw_inverted(
 
 
 @njit(**OPTIONS)
-def _transmits(nodes: Integers, x: Real, rate: float, inputs: Real, cosine: float) -> bool:
+def _transmits(nodes: Integers, x: Real, theta: Real, inputs: Real, cosine: float) -> bool:
     """Return whether a Stephenson II transmits well at all inputs, on one side of its toggles."""
     n, hand = len(nodes), 0.0
     constants, places, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.zeros(n)
     compute_constants(nodes, x, constants)
     for k in range(len(inputs)):
-        if not close_linkage(nodes, x, constants, rate * inputs[k], places, cosines):
+        if not close_linkage(nodes, x, constants, theta[k], places, cosines):
             return False
-        a, b, c, d, e, o4 = (
+        a, b, c, d, e, o2, o4 = (
             complex(places[0, 0], places[0, 1]), complex(places[1, 0], places[1, 1]),
             complex(places[2, 0], places[2, 1]), complex(places[3, 0], places[3, 1]),
-            complex(places[4, 0], places[4, 1]), complex(places[6, 0], places[6, 1]),
+            complex(places[4, 0], places[4, 1]), complex(places[5, 0], places[5, 1]),
+            complex(places[6, 0], places[6, 1]),
         )  # fmt: skip
+        # The input link sees the ground turned back.
+        o4 = o2 + (o4 - o2) * complex(math.cos(inputs[k]), -math.sin(inputs[k]))
         slant, sine, _ = find_min_slant(e, o4, a, b, c, d)
         if not (abs(slant) <= cosine and hand * sine >= 0.0):
             return False
