@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.arrays import Complex, Real
 from synthesis.fit.linkage.margins import EQUATION_COUNT, count_margins
 from synthesis.fit.linkage.residuals import (
-    CARRIED,
+    ARM,
     DIRECTION,
     FIRST_NODE,
     FREE,
@@ -90,7 +90,7 @@ class FitTask:
     Attributes
     ----------
     targets : float, shape (targets, 8)
-        Targets of the traced point (PLACE) and the output (DIRECTION, CARRIED), each of any node: a topology has its
+        Targets of the traced point (PLACE) and the output (DIRECTION, ARM), each of any node: a topology has its
         own. See :func:`build_point_targets` and :func:`build_function_targets`.
     pack_limits : callable
         Returns the setting of a topology with the limits on its linkages.
@@ -124,7 +124,7 @@ class FitTask:
         for kind, ends in (
             (PLACE, (topology.point, 0)),
             (DIRECTION, topology.get_direction("output")),
-            (CARRIED, (topology.triad[0] if topology.triad else 0, topology.fixed_pivots[0])),
+            (ARM, (topology.triad[0] if topology.triad else 0, topology.fixed_pivots[0])),
         ):
             targets[targets[:, KIND] == kind, FIRST_NODE : SECOND_NODE + 1] = ends
         setting[FULL_TURN], setting[STEPS], setting[BACK] = self.full_turn, self.steps, self.back
@@ -145,7 +145,7 @@ def build_function_targets(inputs: Real, outputs: Real, roots: Real, length_root
     if length_root is None:
         targets[:, KIND], targets[:, X] = DIRECTION, outputs
     else:
-        targets[:, KIND], targets[:, X], targets[:, Y], targets[:, FREE] = CARRIED, inputs, outputs, length_root
+        targets[:, KIND], targets[:, X], targets[:, Y], targets[:, FREE] = ARM, inputs, outputs, length_root
     return targets
 
 

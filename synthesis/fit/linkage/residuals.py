@@ -8,10 +8,10 @@ kind      residuals
 PLACE     node i minus (a, b), two rows
 TURN      rotation of the direction from node i to node j since the reference position, minus a, one row
 DIRECTION angle of the direction from node i to node j, minus a, one row
-CARRIED   ln((e^(ia) (X_i − X_j) + X_j − X_k) / |Z_i − Z_k|) − ib with k = j + 1, two rows
+ARM       ln((e^(ia) (X_i − X_j) + X_j − X_k) / |Z_i − Z_k|) − ib with k = j + 1, two rows
 ========= =================================================================================================
 
-A CARRIED target belongs to a linkage that is seen from its input link, as a Stephenson II. The input link, with node i
+An ARM target belongs to a linkage that is seen from its input link, as a Stephenson II. The input link, with node i
 on it, is turned by a about its pivot j. Then node i must be at its distance in the reference position from the other
 pivot k, in the direction b from there: they are joined by the output. The weight of the distance has the root ``free``.
 
@@ -61,7 +61,7 @@ from synthesis.fit.linkage.setting import BACK, FULL_TURN, POINT_NODE, STEPS, WI
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
-PLACE, TURN, DIRECTION, CARRIED = range(4)
+PLACE, TURN, DIRECTION, ARM = range(4)
 """Kinds of targets."""
 
 KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE = range(8)
@@ -100,7 +100,7 @@ def _turn(vector: complex, angle: float) -> complex:
 
 @njit(**OPTIONS)
 def _carry_arm(target: Real, z: Real, places: Real) -> tuple[complex, float]:
-    """Return the arm of the output of a CARRIED target, as the ground sees it, and its length in the reference
+    """Return the arm of the output of an ARM target, as the ground sees it, and its length in the reference
     position."""
     i, j = int(target[FIRST_NODE]), int(target[SECOND_NODE])
     k = j + 1
@@ -111,7 +111,7 @@ def _carry_arm(target: Real, z: Real, places: Real) -> tuple[complex, float]:
 
 @njit(**OPTIONS)
 def _write_carried_slopes(target: Real, z: Real, places: Real, slopes: Real, rows: Real) -> None:
-    """Write the derivatives of a CARRIED target's two rows by the unknowns, at a fixed input."""
+    """Write the derivatives of an ARM target's two rows by the unknowns, at a fixed input."""
     i, j = int(target[FIRST_NODE]), int(target[SECOND_NODE])
     k, root, root_of_length = j + 1, target[ROOT], target[FREE]
     arm, length = _carry_arm(target, z, places)
@@ -129,7 +129,7 @@ def _write_carried_slopes(target: Real, z: Real, places: Real, slopes: Real, row
 
 @njit(**OPTIONS)
 def _carry_ground(target: Real, places: Real) -> None:
-    """Turn the ground of a CARRIED target back by the rotation of the input link, which sees it there."""
+    """Turn the ground of an ARM target back by the rotation of the input link, which sees it there."""
     j = int(target[SECOND_NODE])
     ground = _turn(complex(places[j + 1, 0] - places[j, 0], places[j + 1, 1] - places[j, 1]), -target[X])
     places[j + 1, 0], places[j + 1, 1] = places[j, 0] + ground.real, places[j, 1] + ground.imag
@@ -164,7 +164,7 @@ def _measure_slot(
                 residuals[m] = root * (places[i, axis] - targets[t, X + axis])
                 tangent[m] = root * rates[i, axis]
                 m += 1
-        elif targets[t, KIND] == CARRIED:
+        elif targets[t, KIND] == ARM:
             arm, length = _carry_arm(targets[t], z, places)
             residuals[m] = targets[t, FREE] * math.log(abs(arm) / length)
             off = math.atan2(arm.imag, arm.real) - targets[t, Y]
@@ -226,7 +226,7 @@ def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Re
                 for c in range(count):
                     rows[m, c] = root * slopes[i, axis, 1 + c]
                 m += 1
-        elif targets[t, KIND] == CARRIED:
+        elif targets[t, KIND] == ARM:
             _write_carried_slopes(targets[t], z, places, slopes, rows[m:])
             m += 2
         else:
@@ -530,7 +530,7 @@ def compute_linkage_rows(
         return -1
     first_slopes = np.empty((n, 2, unknowns))
     # The steps of a linkage that carries its ground are its targets.
-    turns = np.empty((steps if targets[0, KIND] == CARRIED else 0, unknowns))
+    turns = np.empty((steps if targets[0, KIND] == ARM else 0, unknowns))
     m, left_out = _write_target_rows(
         x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], turns, places,
         first_slopes, residuals, jacobian,

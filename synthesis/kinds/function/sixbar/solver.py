@@ -218,8 +218,8 @@ class SixbarSearch:
             reached = self._select_best([*self._solve_nine_pairs(rng, progress), *reached])
         improved = [self._optimize(one) for one in reached]
         improved.sort(key=lambda one: one.error)
-        if self.task.problem.function is not None:
-            # The maximum error of a function decreases slowly in the end, along a curved valley.
+        if self.task.problem.aim == "minimax" and improved and improved[0].error > PAIR_TOLERANCE:
+            # The maximum error decreases slowly in the end, along a curved valley.
             improved[:BEST_COUNT] = [self._optimize(one, MAX_LAST_ROUNDS) for one in improved[:BEST_COUNT]]
             improved.sort(key=lambda one: one.error)
         return [one for one in improved if math.isfinite(one.error)]
