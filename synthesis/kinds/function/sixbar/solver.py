@@ -318,12 +318,13 @@ class SixbarSearch:
 class _ScaleSearch:
     """Search for sixbars of a topology with given scales.
 
-    ``pool`` are the best distinct fits at few points, the nearest first.
+    ``pool`` are the best distinct fits at few points, the nearest first, and ``unperturbed`` those before they were
+    perturbed, which belong to more valleys.
     """
 
     def __init__(self, topology: Topology, scales: tuple[float, float], search: SixbarSearch) -> None:
         self.topology, self.search, self.few, self.points = topology, search, search.few, search.points
-        self.scale, self.pool = scales[1], list[Fit]()
+        self.scale, self.pool, self.unperturbed = scales[1], list[Fit](), list[Fit]()
         reference = self.points.reference
         self.few_rotations = scales[0] * (self.few.inputs - reference)
         self.rotations = scales[0] * (self.points.inputs - reference)
@@ -359,6 +360,7 @@ class _ScaleSearch:
             found = follow_valleys(select_distinct_fits(found, math.ceil(count / shared)), self.few_task, steps)
         self.pool = select_distinct_fits([*self.pool, *found], POOL_SIZE)
         progress(0.7, compose("function-improving-sixbars", count=drawn, type=name))
+        self.unperturbed = self.pool[: effort.followed_to_the_end[0]]
         self._perturb_pool(effort.hops, rng)
         if MET_ERROR < self.nearest_error < NEAR_ERROR:
             nearest = follow_valleys(self.pool[:NEAREST_COUNT], self.few_task, MAX_NEAREST_STEPS)
@@ -377,7 +379,7 @@ class _ScaleSearch:
 
     def follow_to_the_end(self, count: int, steps: int) -> list[Fit]:
         """Follow the nearest fits at all points; return distinct ones, the nearest first."""
-        near = [self._move_to_points(fit) for fit in self.pool[:count]]
+        near = [self._move_to_points(fit) for fit in [*self.pool[: count // 2], *self.unperturbed]]
         return select_distinct_fits(follow_valleys(near, self.task, steps), count)
 
     def _move_to_points(self, fit: Fit) -> Fit:
