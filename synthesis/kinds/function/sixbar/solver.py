@@ -225,7 +225,7 @@ class SixbarSearch:
         return [one for one in improved if math.isfinite(one.error)]
 
     def _optimize(self, one: SixbarCandidate, rounds: int = MAX_ROUNDS) -> SixbarCandidate:
-        """Optimise a sixbar by the criterion, by at most so many linear programs."""
+        """Optimise a sixbar by the criterion, with at most ``rounds`` linear programs."""
         return optimize_sixbar(self.task, one, self.points.dense, self.pack_limits, rounds)
 
     def _list_scales(self, rng: np.random.Generator) -> list[tuple[float, float]]:
