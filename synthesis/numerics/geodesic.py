@@ -10,7 +10,8 @@ residuals along v a step follows the bend (Transtrum & Sethna, arXiv:1201.5885, 
 
 A step is accepted if |D a| ≤ α |D v| and the sum of squares decreases. D holds the maximum norm of each column of J so
 far. One QR decomposition solves both systems; normal equations would lose the flat directions that matter here.
-Problems have the form of :mod:`synthesis.numerics.levenberg`, with the same rows in the same order at every point.
+Problems have the form of :mod:`synthesis.numerics.levenberg`. Where rows appear or vanish, as those of limits do, a
+step has no acceleration.
 """
 
 from __future__ import annotations
@@ -214,12 +215,15 @@ def follow_valley(
             continue
         _move_open(x, open_, free, DIFFERENCE_STEP * velocity, trial)
         trial_state[:] = state
-        if rows(trial, points, setting, multipliers, trial_state, tried, unused) != m:
+        ahead = rows(trial, points, setting, multipliers, trial_state, tried, unused)
+        if ahead < 0:
             damping *= DAMPING_INCREASE
             continue
-        # Second derivative of the residuals along the velocity, by a one-sided difference with the known slope.
-        _write_bending(jacobian, m, open_, free, velocity, residuals, tried, right)
-        _solve_qr(matrix, m + free, free, heads, right, acceleration)
+        acceleration[:] = 0.0
+        if ahead == m:
+            # Second derivative of the residuals along the velocity, by a one-sided difference with the known slope.
+            _write_bending(jacobian, m, open_, free, velocity, residuals, tried, right)
+            _solve_qr(matrix, m + free, free, heads, right, acceleration)
         # A large acceleration means that the quadratic model does not hold over this step.
         limit = MAX_ACCELERATION_RATIO * _compute_scaled_norm(scale, velocity)
         if not _compute_scaled_norm(scale, acceleration) <= limit:
@@ -229,13 +233,13 @@ def follow_valley(
         _move_open(x, open_, free, velocity + 0.5 * acceleration, trial)
         trial_state[:] = state
         reached = rows(trial, points, setting, multipliers, trial_state, tried, unused)
-        gained = compute_half_square(tried, m) if reached == m else math.inf
+        gained = compute_half_square(tried, reached) if reached >= 0 else math.inf
         if not gained < cost:
             damping *= DAMPING_INCREASE
             continue
         # Several idle steps in turn are needed: in a curved valley a single small gain is normal.
         idle = idle + 1 if cost - gained <= MIN_RELATIVE_GAIN * cost else 0
-        cost = gained
+        cost, m = gained, reached
         x[:] = trial
         state[:] = trial_state
         # Swap buffers instead of copying.

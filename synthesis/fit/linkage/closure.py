@@ -119,6 +119,16 @@ def close_linkage(nodes: Integers, z: Real, constants: Real, theta: float, place
 
 
 @njit(**OPTIONS)
+def trace_linkage(nodes: Integers, z: Real, thetas: Real, places: Real, cosines: Real) -> None:
+    """Move a linkage through inputs (m,): nodes (m, n, 2) and cosines (m, n), NaN where it does not close."""
+    constants = np.empty((len(nodes), CONSTANT_COUNT))
+    compute_constants(nodes, z, constants)
+    for k in range(len(thetas)):
+        if not close_linkage(nodes, z, constants, thetas[k], places[k], cosines[k]):
+            places[k], cosines[k] = np.nan, np.nan
+
+
+@njit(**OPTIONS)
 def differentiate_input(nodes: Integers, z: Real, constants: Real, places: Real, rates: Real) -> None:
     """Compute the derivatives of all nodes by the input, shape (n, 2), at the position of :func:`close_linkage`."""
     for k in range(len(nodes)):

@@ -18,11 +18,14 @@ import numpy as np
 from kinematics.arrays import Complex, Real
 from synthesis.fit.linkage.margins import EQUATION_COUNT, count_margins
 from synthesis.fit.linkage.residuals import (
+    ARM,
+    DIRECTION,
     FIRST_NODE,
     FREE,
     KIND,
     PLACE,
     ROOT,
+    SECOND_NODE,
     SLOT,
     TARGET_SIZE,
     X,
@@ -33,6 +36,7 @@ from synthesis.fit.linkage.residuals import (
 from synthesis.fit.linkage.setting import BACK, FULL_TURN, STEPS, WIDTH
 from synthesis.fit.linkage.topology import POINT, Topology
 from synthesis.numerics.augmented_lagrangian import descend_constrained
+from synthesis.numerics.geodesic import follow_valley
 from synthesis.numerics.levenberg import Rows, descend
 from synthesis.numerics.portions import run_in_portions
 from synthesis.numerics.status import Status
@@ -47,6 +51,13 @@ verification of the driven linkage decides about small ones."""
 MAX_ROUNDS, MAX_CONSTRAINED_STEPS = 8, 60
 """Maximum number of descents under enforced constraints, with a multiplier update after each, and of steps of each."""
 
+MAX_VALLEY_HOP, MAX_VALLEY_DIRECTIONS = 0.6, 5
+"""Perturbation along a valley: maximum change of a coordinate, in shortest links at its node, and maximum number of the
+directions that change the residuals least."""
+
+GAUGE_TOLERANCE = 1e-12
+"""Relative singular value below which a direction only places the linkage and changes nothing else."""
+
 PORTION_SIZE = 4
 """Number of descents that a thread takes at a time."""
 
@@ -55,6 +66,9 @@ HOP_SIZE, HOP_SPREAD = 0.1, 0.9
 
 HOP_RANK = 4.0
 """Mean rank of the fits that are perturbed: better ones are perturbed more often."""
+
+LOADING_MULTIPLIER = 1e9
+"""Multiplier that exceeds every margin, so that all limits bear a load."""
 
 MIN_GAIN_SHARE = 1e-3
 """Share of its cost by which a fit must improve to replace its parent: less is the same minimum."""
@@ -76,7 +90,8 @@ class FitTask:
     Attributes
     ----------
     targets : float, shape (targets, 8)
-        Targets of the traced point, see :func:`build_point_targets`.
+        Targets of the traced point (PLACE) and the output (DIRECTION, ARM), each of any node: a topology has its
+        own. See :func:`build_point_targets` and :func:`build_function_targets`.
     pack_limits : callable
         Returns the setting of a topology with the limits on its linkages.
     full_turn : bool
@@ -91,8 +106,6 @@ class FitTask:
         Data that these rows expect before the setting of :func:`~synthesis.fit.linkage.residuals.compute_linkage_rows`.
     prefix_margins : int
         Number of margins that they write before its margins.
-    soft_weight : float
-        Weight of soft constraints.
     """
 
     targets: Real
@@ -104,15 +117,36 @@ class FitTask:
     rows: Rows = compute_linkage_rows
     prefix: Real = field(default_factory=lambda: np.empty(0))
     prefix_margins: int = 0
-    soft_weight: float = SOFT_WEIGHT
 
     def pack_topology(self, topology: Topology) -> tuple[Real, Real]:
         """Return targets and setting for a topology."""
         targets, setting = self.targets.copy(), self.pack_limits(topology).copy()
-        targets[:, FIRST_NODE] = topology.point
+        for kind, ends in (
+            (PLACE, (topology.point, 0)),
+            (DIRECTION, topology.get_direction("output")),
+            (ARM, (topology.triad[0] if topology.triad else 0, topology.fixed_pivots[0])),
+        ):
+            targets[targets[:, KIND] == kind, FIRST_NODE : SECOND_NODE + 1] = ends
         setting[FULL_TURN], setting[STEPS], setting[BACK] = self.full_turn, self.steps, self.back
         setting[WIDTH] = self.width
         return targets, setting
+
+
+def build_function_targets(inputs: Real, outputs: Real, roots: Real, length_root: float | None = None) -> Real:
+    """Return rows of targets for the directions of the output at inputs (m,), radians from the reference position.
+
+    The whole linkage turns freely, so that outputs (m,) may count from any direction. ``roots`` (m,) are roots of their
+    weights. A linkage that is seen from its input link carries the ground; the length of its output, too, is a target,
+    with the root ``length_root`` of its weight.
+    """
+    m = len(inputs)
+    targets = np.zeros((m, TARGET_SIZE))
+    targets[:, ROOT], targets[:, SLOT] = roots, range(m)
+    if length_root is None:
+        targets[:, KIND], targets[:, X] = DIRECTION, outputs
+    else:
+        targets[:, KIND], targets[:, X], targets[:, Y], targets[:, FREE] = ARM, inputs, outputs, length_root
+    return targets
 
 
 def build_point_targets(points: Complex, weights: Real) -> Real:
@@ -125,23 +159,77 @@ def build_point_targets(points: Complex, weights: Real) -> Real:
 
 
 def descend_softly(
-    fits: Sequence[Fit], task: FitTask, steps: int, tolerance: float = SOFT_TOLERANCE
-) -> list[Fit]:  # fmt: skip
-    """Descend at most ``steps`` steps with constraints as penalties, which may remain violated a little.
+    fits: Sequence[Fit], task: FitTask, steps: int, tolerance: float = SOFT_TOLERANCE, weight: float = SOFT_WEIGHT
+) -> list[Fit]:
+    """Descend at most ``steps`` steps with constraints as penalties of a weight, which may remain violated a little.
 
     Fits that cannot close have an infinite cost.
     """
+
+    def descend_rows(x: Real, targets: Real, setting: Real, multipliers: Real, state: Real, most: int) -> float:
+        cost, _ = descend(task.rows, x, targets, setting, multipliers, state, most, steps, tolerance)
+        return cost
+
+    return _descend_each(descend_rows, fits, task, weight)
+
+
+def follow_valleys(fits: Sequence[Fit], task: FitTask, steps: int, weight: float = SOFT_WEIGHT) -> list[Fit]:
+    """Descend as :func:`descend_softly`, along the curved valleys of :mod:`synthesis.numerics.geodesic`."""
+
+    def descend_rows(x: Real, targets: Real, setting: Real, multipliers: Real, state: Real, most: int) -> float:
+        return follow_valley(task.rows, x, targets, setting, multipliers, state, most, steps)
+
+    return _descend_each(descend_rows, fits, task, weight)
+
+
+def _descend_each(
+    descend_rows: Callable[[Real, Real, Real, Real, Real, int], float],
+    fits: Sequence[Fit],
+    task: FitTask,
+    weight: float,
+) -> list[Fit]:
+    """Apply a descent in place, which returns its cost, to every fit."""
     packed = _pack_each(fits, task)
 
     def descend_one(fit: Fit) -> Fit:
         targets, setting, limits, most = packed[id(fit.topology)]
         x, state = fit.x.copy(), np.concatenate([fit.inputs, np.zeros(limits)])
         multipliers = np.zeros(limits + 1)
-        multipliers[limits] = task.soft_weight
-        cost, _ = descend(task.rows, x, targets, setting, multipliers, state, most, steps, tolerance)
+        multipliers[limits] = weight
+        cost = descend_rows(x, targets, setting, multipliers, state, most)
         return Fit(fit.topology, x, state[: len(fit.inputs)], cost)
 
     return _run_each(descend_one, fits, PORTION_SIZE)
+
+
+class FitRows(NamedTuple):
+    """Rows of a fit without limits, and its margins: residuals (m,), Jacobian (m, u), settled inputs; finite margins
+    (g,) and their derivatives (g, u)."""
+
+    residuals: Real
+    jacobian: Real
+    inputs: Real
+    margins: Real
+    gradients: Real
+
+
+def evaluate_rows(fit: Fit, task: FitTask) -> FitRows | None:
+    """Evaluate a fit and all of its constraints; None if it does not close."""
+    targets, setting, limits, most = _pack_each([fit], task)[id(fit.topology)]
+    state = np.concatenate([fit.inputs, np.zeros(limits)])
+    residuals, jacobian = np.zeros(most), np.zeros((most, len(fit.x)))
+    # A huge multiplier loads every limit, so that the derivatives of all of them are written.
+    multipliers = np.full(limits + 1, LOADING_MULTIPLIER)
+    multipliers[limits] = 1.0
+    count = task.rows(fit.x, targets, setting, multipliers, state, residuals, jacobian)
+    if count < 0:
+        return None
+    margins = state[len(fit.inputs) :]
+    margins = margins[np.isfinite(margins)]
+    own = count - len(margins)
+    return FitRows(
+        residuals[:own], jacobian[:own], state[: len(fit.inputs)].copy(), margins.copy(), -jacobian[own:count]
+    )
 
 
 def fit_constrained(
@@ -191,8 +279,8 @@ def sort_fits(fits: Sequence[Fit]) -> list[Fit]:
     return sorted((fit for fit in fits if math.isfinite(fit.cost)), key=lambda fit: fit.cost)
 
 
-def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
-    """Move every node of a linkage at random, by ``size`` times the shortest link at the node."""
+def measure_shortest(fit: Fit) -> Real:
+    """Return the length of the shortest link at each node; 0 for views, which have no coordinates of their own."""
     nodes, places = fit.topology.nodes, fit.x[: 2 * len(fit.topology.nodes)].reshape(-1, 2)
     shortest = np.full(len(nodes), math.inf)
     pairs = [*fit.topology.pairs]
@@ -201,19 +289,39 @@ def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
     for pair in pairs:
         length = float(np.hypot(*(places[pair[0]] - places[pair[1]])))
         shortest[pair] = np.minimum(shortest[pair], length)
-    # Views have no coordinates of their own.
     shortest[~np.isfinite(shortest)] = 0.0
-    moved = fit.x.copy()
-    moved[: places.size] += (size * shortest[:, None] * rng.normal(size=places.shape)).ravel()
+    return shortest
+
+
+def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
+    """Move every node of a linkage at random, by ``size`` times the shortest link at the node."""
+    shortest, moved = measure_shortest(fit), fit.x.copy()
+    moved[: 2 * len(shortest)] += (size * shortest[:, None] * rng.normal(size=(len(shortest), 2))).ravel()
+    return fit._replace(x=moved, cost=math.inf)
+
+
+def perturb_along_valley(fit: Fit, task: FitTask, rng: np.random.Generator) -> Fit:
+    """Move a linkage along the directions that change its residuals least."""
+    rows, sizes = evaluate_rows(fit, task), np.repeat(measure_shortest(fit), 2)
+    if rows is None:
+        return fit
+    _, values, along = np.linalg.svd(rows.jacobian[:, : len(sizes)] * sizes, full_matrices=False)
+    along = along[values > GAUGE_TOLERANCE * values[0]]
+    taken = int(rng.integers(1, min(MAX_VALLEY_DIRECTIONS, len(along)) + 1))
+    step, moved = along[-taken:].T @ rng.normal(size=taken), fit.x.copy()
+    # A random length, but never so short that the same minimum is found again.
+    moved[: len(sizes)] += rng.uniform(0.1, 1.0) * MAX_VALLEY_HOP * sizes * step / np.abs(step).max()
     return fit._replace(x=moved, cost=math.inf)
 
 
 def hop_basins(
-    fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator, halvings: int = 0
-) -> list[Fit]:
+    fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator, halvings: int = 0,
+    weight: float = SOFT_WEIGHT,
+) -> list[Fit]:  # fmt: skip
     """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first.
 
-    A perturbation after which a linkage does not close is halved up to ``halvings`` times.
+    A perturbation after which a linkage does not close is halved up to ``halvings`` times. ``weight`` is that of the
+    constraints.
     """
     pool = sort_fits(fits)
     if not pool:
@@ -223,7 +331,7 @@ def hop_basins(
     children, waiting = dict[int, Fit](), list(range(hops))
     for _ in range(halvings + 1):
         copies = [perturb_fit(pool[parents[k]], float(sizes[k]), rng) for k in waiting]
-        children |= zip(waiting, descend_softly(copies, task, steps), strict=True)
+        children |= zip(waiting, descend_softly(copies, task, steps, weight=weight), strict=True)
         waiting = [k for k in waiting if not math.isfinite(children[k].cost)]
         sizes *= 0.5
     for k, parent in enumerate(parents):

@@ -2,12 +2,18 @@
 
 A target is a row (kind, i, j, a, b, root, slot, free):
 
-======= =================================================================================================
-kind    residuals
-======= =================================================================================================
-PLACE   node i minus (a, b), two rows
-TURN    rotation of the direction from node i to node j since the reference position, minus a, one row
-======= =================================================================================================
+========= =================================================================================================
+kind      residuals
+========= =================================================================================================
+PLACE     node i minus (a, b), two rows
+TURN      rotation of the direction from node i to node j since the reference position, minus a, one row
+DIRECTION angle of the direction from node i to node j, minus a, one row
+ARM       ln((e^(ia) (X_i − X_j) + X_j − X_k) / |Z_i − Z_k|) − ib with k = j + 1, two rows
+========= =================================================================================================
+
+An ARM target belongs to a linkage that is seen from its input link, as a Stephenson II. The input link, with node i
+on it, is turned by a about its pivot j. Then node i must be at its distance in the reference position from the other
+pivot k, in the direction b from there: they are joined by the output. The weight of the distance has the root ``free``.
 
 They are multiplied by ``root``, the root of a weight. Targets of one slot are consecutive and share an input. A free
 input is eliminated: for each linkage it is moved to the position with the least squares of its slot, by Gauss–Newton
@@ -55,7 +61,7 @@ from synthesis.fit.linkage.setting import BACK, FULL_TURN, POINT_NODE, STEPS, WI
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
-PLACE, TURN = 0, 1
+PLACE, TURN, DIRECTION, ARM = range(4)
 """Kinds of targets."""
 
 KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE = range(8)
@@ -87,6 +93,65 @@ def count_rows(targets: int, setting: Real) -> int:
 
 
 @njit(**OPTIONS)
+def _turn(vector: complex, angle: float) -> complex:
+    """Return a vector rotated by an angle."""
+    return vector * complex(math.cos(angle), math.sin(angle))
+
+
+@njit(**OPTIONS)
+def _carry_arm(target: Real, z: Real, places: Real) -> tuple[complex, float]:
+    """Return the arm of the output of an ARM target, as the ground sees it, and its length in the reference
+    position."""
+    i, j = int(target[FIRST_NODE]), int(target[SECOND_NODE])
+    k = j + 1
+    pin = complex(places[i, 0] - places[j, 0], places[i, 1] - places[j, 1])
+    ground = complex(z[2 * k] - z[2 * j], z[2 * k + 1] - z[2 * j + 1])
+    return _turn(pin, target[X]) - ground, math.hypot(z[2 * i] - z[2 * k], z[2 * i + 1] - z[2 * k + 1])
+
+
+@njit(**OPTIONS)
+def _write_carried_slopes(target: Real, z: Real, places: Real, slopes: Real, rows: Real) -> None:
+    """Write the derivatives of an ARM target's two rows by the unknowns, at a fixed input."""
+    i, j = int(target[FIRST_NODE]), int(target[SECOND_NODE])
+    k, root, root_of_length = j + 1, target[ROOT], target[FREE]
+    arm, length = _carry_arm(target, z, places)
+    rows[:2] = 0.0
+    for c in range(slopes.shape[2] - 1):
+        pivot = complex(slopes[j, 0, 1 + c], slopes[j, 1, 1 + c])
+        moved = _turn(complex(slopes[i, 0, 1 + c], slopes[i, 1, 1 + c]) - pivot, target[X])
+        moved = (moved + pivot - complex(slopes[k, 0, 1 + c], slopes[k, 1, 1 + c])) / arm
+        rows[0, c], rows[1, c] = root_of_length * moved.real, root * moved.imag
+    for axis in range(2):
+        change = root_of_length * (z[2 * i + axis] - z[2 * k + axis]) / (length * length)
+        rows[0, 2 * i + axis] -= change
+        rows[0, 2 * k + axis] += change
+
+
+@njit(**OPTIONS)
+def _carry_ground(target: Real, places: Real) -> None:
+    """Turn the ground of an ARM target back by the rotation of the input link, which sees it there."""
+    j = int(target[SECOND_NODE])
+    ground = _turn(complex(places[j + 1, 0] - places[j, 0], places[j + 1, 1] - places[j, 1]), -target[X])
+    places[j + 1, 0], places[j + 1, 1] = places[j, 0] + ground.real, places[j, 1] + ground.imag
+
+
+@njit(**OPTIONS)
+def _carry_slopes(target: Real, turn: Real, slopes: Real) -> None:
+    """Turn the derivatives of the ground as :func:`_carry_ground`, and add those of the input, ``turn``, to all."""
+    j = int(target[SECOND_NODE])
+    for c in range(len(turn)):
+        moved = complex(
+            slopes[j + 1, 0, 1 + c] - slopes[j, 0, 1 + c], slopes[j + 1, 1, 1 + c] - slopes[j, 1, 1 + c]
+        )  # fmt: skip
+        moved = _turn(moved, -target[X])
+        slopes[j + 1, 0, 1 + c] = slopes[j, 0, 1 + c] + moved.real
+        slopes[j + 1, 1, 1 + c] = slopes[j, 1, 1 + c] + moved.imag
+        for k in range(len(slopes)):
+            for axis in range(2):
+                slopes[k, axis, 1 + c] += turn[c] * slopes[k, axis, 0]
+
+
+@njit(**OPTIONS)
 def _measure_slot(
     targets: Real, first: int, last: int, z: Real, places: Real, rates: Real, residuals: Real, tangent: Real
 ) -> int:
@@ -99,10 +164,19 @@ def _measure_slot(
                 residuals[m] = root * (places[i, axis] - targets[t, X + axis])
                 tangent[m] = root * rates[i, axis]
                 m += 1
+        elif targets[t, KIND] == ARM:
+            arm, length = _carry_arm(targets[t], z, places)
+            residuals[m] = targets[t, FREE] * math.log(abs(arm) / length)
+            off = math.atan2(arm.imag, arm.real) - targets[t, Y]
+            residuals[m + 1] = root * (off - 2.0 * math.pi * round(off / (2.0 * math.pi)))
+            moved = _turn(complex(rates[i, 0], rates[i, 1]), targets[t, X]) / arm
+            tangent[m], tangent[m + 1] = targets[t, FREE] * moved.real, root * moved.imag
+            m += 2
         else:
-            j = int(targets[t, SECOND_NODE])
+            j, hx, hy = int(targets[t, SECOND_NODE]), 1.0, 0.0
             gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+            if targets[t, KIND] == TURN:
+                hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
             off = math.atan2(hx * gy - hy * gx, hx * gx + hy * gy) - targets[t, X]
             # Rotations are compared modulo full turns.
             off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
@@ -152,20 +226,25 @@ def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Re
                 for c in range(count):
                     rows[m, c] = root * slopes[i, axis, 1 + c]
                 m += 1
+        elif targets[t, KIND] == ARM:
+            _write_carried_slopes(targets[t], z, places, slopes, rows[m:])
+            m += 2
         else:
             j = int(targets[t, SECOND_NODE])
             gx, gy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-            hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
-            per, by_reference = root / (gx * gx + gy * gy), root / (hx * hx + hy * hy)
+            per = root / (gx * gx + gy * gy)
             rows[m] = 0.0
             for c in range(count):
                 dx, dy = slopes[j, 0, 1 + c] - slopes[i, 0, 1 + c], slopes[j, 1, 1 + c] - slopes[i, 1, 1 + c]
                 rows[m, c] = per * (gx * dy - gy * dx)
-            # The reference direction rotates with the unknowns, too.
-            rows[m, 2 * j] += by_reference * hy
-            rows[m, 2 * j + 1] -= by_reference * hx
-            rows[m, 2 * i] -= by_reference * hy
-            rows[m, 2 * i + 1] += by_reference * hx
+            if targets[t, KIND] == TURN:
+                # The reference direction rotates with the unknowns, too.
+                hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
+                by_reference = root / (hx * hx + hy * hy)
+                rows[m, 2 * j] += by_reference * hy
+                rows[m, 2 * j + 1] -= by_reference * hx
+                rows[m, 2 * i] -= by_reference * hy
+                rows[m, 2 * i + 1] += by_reference * hx
             m += 1
 
 
@@ -268,12 +347,14 @@ def _measure_arcs(curve: Real, closed: bool, arcs: Real) -> None:
 @njit(**OPTIONS)
 def _write_target_rows(
     x: Real, targets: Real, setting: Real, nodes: Integers, constants: Real, curve: Real, begin: float, per: float,
-    low: float, high: float, inputs: Real, first_places: Real, first_slopes: Real, residuals: Real, jacobian: Real,
+    low: float, high: float, inputs: Real, turns: Real, first_places: Real, first_slopes: Real, residuals: Real,
+    jacobian: Real,
 ) -> tuple[int, float]:  # fmt: skip
     """Write the rows of all targets; return their number and the part of the robust sum that they leave out.
 
     The number is −1 if the linkage does not close at an input. ``inputs`` (slots,) settle in place within [low, high].
     ``curve`` (steps, 2) is the traced curve from the input ``begin`` in steps of ``per``, for the robust form.
+    ``turns`` (slots or 0, unknowns) receive the derivatives of the inputs.
     ``first_places`` and ``first_slopes`` receive the nodes at the first target and their derivatives.
     """
     n, count, unknowns, point = len(nodes), len(targets), len(x), int(setting[POINT_NODE])
@@ -315,6 +396,8 @@ def _write_target_rows(
             turn[end] = 1.0
             for k in range(added):
                 jacobian[m + k, end] += tangent[k]
+        if slot < len(turns):
+            turns[slot] = turn
         if first == 0:
             first_places[:] = places
             for k in range(n):
@@ -354,8 +437,8 @@ def _write_back_row(
 @njit(**OPTIONS)
 def _write_step_rows(
     x: Real, targets: Real, setting: Real, multipliers: Real, nodes: Integers, transmitting: Integers, pins: Integers,
-    constants: Real, curve: Real, begin: float, per: float, number: int, values: Real, gradients: Real, m: int,
-    residuals: Real, jacobian: Real,
+    constants: Real, curve: Real, begin: float, per: float, inputs: Real, turns: Real, number: int, values: Real,
+    gradients: Real, m: int, residuals: Real, jacobian: Real,
 ) -> tuple[int, float]:  # fmt: skip
     """Write the margins of all steps of the input, from ``number`` on, and the rows of the way back, from m on.
 
@@ -373,9 +456,12 @@ def _write_step_rows(
             return -1, 0.0
         _measure_arcs(curve, full, arcs)
     for k in range(steps):
-        theta = begin + per * k
+        carried = k < len(turns)
+        theta = inputs[k] if carried else begin + per * k
         if not close_linkage(nodes, x, constants, theta, places, cosines):
             return -1, 0.0
+        if carried:
+            _carry_ground(targets[k], places)
         sine = write_step_values(transmitting, pins, places, cosines, setting, number, values)
         # A sign change between two steps means that a triad has passed a toggle, where the input turns back.
         if hand * sine < 0.0:
@@ -383,7 +469,11 @@ def _write_step_rows(
         hand = sine
         loaded = is_loaded(number, step_count, multipliers, values)
         if loaded or back:
+            if carried:
+                slopes[:] = 0.0
             differentiate_nodes(nodes, x, constants, theta, places, slopes)
+            if carried:
+                _carry_slopes(targets[k], turns[k], slopes)
             if not full and setting[WIDTH] > 0.0:
                 by_ends[1] = k / max(steps - 1.0, 1.0)
                 by_ends[0] = 1.0 - by_ends[1]
@@ -439,9 +529,11 @@ def compute_linkage_rows(
     ):  # fmt: skip
         return -1
     first_slopes = np.empty((n, 2, unknowns))
+    # The steps of a linkage that carries its ground are its targets.
+    turns = np.empty((steps if targets[0, KIND] == ARM else 0, unknowns))
     m, left_out = _write_target_rows(
-        x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], places, first_slopes,
-        residuals, jacobian,
+        x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], turns, places,
+        first_slopes, residuals, jacobian,
     )  # fmt: skip
     if m < 0:
         return -1
@@ -453,8 +545,8 @@ def compute_linkage_rows(
     values[:] = np.inf
     number = write_static_margins(x, pairs, pivots, pins, places, first_slopes, setting, multipliers, values, gradients)
     m, more = _write_step_rows(
-        x, targets, setting, multipliers, nodes, transmitting, pins, constants, curve, begin, per, number, values,
-        gradients, m, residuals, jacobian,
+        x, targets, setting, multipliers, nodes, transmitting, pins, constants, curve, begin, per, state[:slots],
+        turns, number, values, gradients, m, residuals, jacobian,
     )  # fmt: skip
     if m < 0:
         return -1

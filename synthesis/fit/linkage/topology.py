@@ -23,7 +23,7 @@ the joints as the ground sees them. It is driven by link 3, relative to the inpu
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from itertools import combinations
 
 import numpy as np
@@ -56,7 +56,7 @@ class Topology:
     body : str
         Name of the link that has the traced point.
     point : int
-        Node of the traced point, as the ground sees it.
+        Node of the traced point, as the ground sees it; without one, the last pin.
     joints : dict of str to int
         Nodes of all joints as the ground sees them, by name.
     families : tuple of int
@@ -81,7 +81,7 @@ class Topology:
         found = [pair for pins in self.links.values() for pair in combinations(pins, 2)]
         return np.array(found, np.int64)
 
-    @property
+    @cached_property
     def pin_names(self) -> dict[int, str]:
         """Names of the joints by the nodes in :attr:`links`, which are not their views."""
         return {int(self.nodes[k, 1] if self.nodes[k, 0] == VIEW else k): name for name, k in self.joints.items()}
@@ -101,17 +101,24 @@ class Topology:
     @property
     def moving_pins(self) -> tuple[int, ...]:
         """Nodes of the moving pins, as the ground sees them."""
-        still = {*self.fixed_pivots, self.point}
-        return tuple(node for node in self.joints.values() if node not in still)
+        still = {self.pin_names[pin] for pin in self.fixed_pivots}
+        return tuple(node for name, node in self.joints.items() if name not in {"P", *still})
+
+    def get_direction(self, link: str) -> tuple[int, int]:
+        """Return the first two nodes of a link as the ground sees them: its direction."""
+        first, second, *_ = (self.joints[self.pin_names[pin]] for pin in self.links[link])
+        return first, second
 
 
-def build_topology(dyads: Dyads) -> Topology:
+def build_topology(dyads: Dyads, *, traces: bool = True) -> Topology:
     """Build the topology of a chain of dyads; the traced point is on the first link of the last dyad.
 
     Parameters
     ----------
     dyads : tuple of pairs of int
         The links to which each dyad is joined, :data:`FIRST_DYAD` first.
+    traces : bool
+        Whether there is a traced point.
     """
     rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, 0)]
     names = ["O2", "A"]
@@ -133,8 +140,9 @@ def build_topology(dyads: Dyads) -> Topology:
         names.append(next(letters))
         pins[2 * number], pins[2 * number + 1] = ([end, len(rows) - 1] for end in ends)
     body = 2 * len(dyads)
-    rows.append((POINT, *pins[body][:2]))
-    names.append("P")
+    if traces:
+        rows.append((POINT, *pins[body][:2]))
+        names.append("P")
     link_names = _name_links(dyads)
     return Topology(
         nodes=_pad_rows(rows),
@@ -171,24 +179,29 @@ STEPHENSON_2_BODIES = {"link_3": (0, 1), "link_4": (1, 3), "link_5": (2, 3)}
 """Links of a Stephenson II that may carry the point, with the two nodes of :func:`build_stephenson_2` on them."""
 
 
-def build_stephenson_2(body: str) -> Topology:
+def build_stephenson_2(body: str, *, traces: bool = True) -> Topology:
     """Build a Stephenson II as its input link sees it, with the views that the ground has of its joints.
 
     Link 3 rotates about A relative to the input and drives the fourbar A B D C; the output, from E on link 4, and the
     ground O4 O2 are a dyad.
     """
     a, b, c, d, e, o2, o4, p = range(8)
-    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, a), (FIXED,), (DYAD, b, c), (POINT, b, d), (FIXED,), (DYAD, e, o2)]
-    rows.append((POINT, *STEPHENSON_2_BODIES[body]))
-    moving = {"A": a, "B": b, "C": c, "D": d, "E": e, "P": p}
-    rows += [(VIEW, node, o2, o4) for node in moving.values()]
-    seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
+    rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, a), (FIXED,), (DYAD, b, c), (POINT, b, d), (FIXED,)]
+    seen = {"A": a, "B": b, "C": c, "D": d, "E": e}
+    if traces:
+        rows += [(DYAD, e, o2), (POINT, *STEPHENSON_2_BODIES[body])]
+        moving = seen | {"P": p}
+        rows += [(VIEW, node, o2, o4) for node in moving.values()]
+        seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
+    else:
+        # Targets carry the ground along: link 3 may turn back, where ground and output are in line.
+        rows.append((FIXED,))
     links = {"ground": (o2, o4), "input": (o2, a, c), "link_3": (a, b), "link_4": (b, d, e), "link_5": (c, d)}
     return Topology(
         nodes=_pad_rows(rows),
         links=links | {"output": (o4, e)},
         body=body,
-        point=seen["P"],
+        point=seen["P" if traces else "E"],
         joints={"O2": o2, "O4": o4} | seen,
         triad=(e, o4, a, b, c, d),
     )
@@ -205,6 +218,13 @@ SIXBAR_FORMS: dict[str, tuple[Topology, ...]] = {
 }
 """Topologies of sixbars whose traced point is on a link that is joined neither to the ground nor to the fourbar alone,
 or on any moving link of a Stephenson II."""
+
+FUNCTION_SIXBARS: dict[str, Topology] = {
+    "watt_2": build_topology((FIRST_DYAD, (ROCKER, GROUND)), traces=False),
+    "stephenson_2": build_stephenson_2("link_4", traces=False),
+    "stephenson_3": build_topology((FIRST_DYAD, (COUPLER, GROUND)), traces=False),
+}
+"""Sixbars whose output is a link on the ground that a fourbar does not drive alone, without a traced point."""
 
 EIGHTBAR_DYAD_COUNT = 3
 """Number of dyads of an eightbar, with that of its first fourbar."""

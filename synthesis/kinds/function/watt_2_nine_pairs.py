@@ -8,25 +8,31 @@ assembly at the pairs and between them are driven by the analysis core.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Complex
+from kinematics.arrays import Complex, Real
 from kinematics.message import compose, join_messages
+from synthesis.fit.linkage.descent import descend_softly
+from synthesis.fit.linkage.setting import pack_topology
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.task import FunctionTask, make_function_task
 from synthesis.kinds.function.nine_pairs.continuation import find_all_watts
 from synthesis.kinds.function.nine_pairs.system import SOLUTION_COUNT
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.ranking import rank_by_error
-from synthesis.kinds.function.sixbar.descents import Descents, SixbarCandidate
-from synthesis.kinds.function.sixbar.followers import follow_sixbar
-from synthesis.kinds.function.sixbar.kernels import WATT_2, A, B, C
+from synthesis.kinds.function.sixbar.fits import SixbarCandidate, build_fit_task, measure_motion
 from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
 from synthesis.kinds.function.sixbar.nine_pair_starts import make_sixbar
-from synthesis.kinds.function.sixbar.solver import EXACT_TOLERANCE, MAX_EXACT_STEPS, make_sample_points
+from synthesis.kinds.function.sixbar.solver import (
+    EXACT_TOLERANCE,
+    MAX_EXACT_STEPS,
+    compute_max_error,
+    make_sample_points,
+)
 from synthesis.kinds.function.verification.verify import verify_function
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog, report_candidates
@@ -131,33 +137,31 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
 
 def _screen_solutions(task: FunctionTask, real: Complex, k: float, l_: float) -> _ScreeningResult:
     """Select the solutions that keep their assembly and satisfy simple limits, and refine them to rounding."""
-    constraints, places = task.problem.constraints, make_sample_points(task)
-    descents = Descents(places.points, 0.0, None)
-    low, high = places.dense[0].min(), places.dense[0].max()
-    dense = np.union1d(np.linspace(low, high, SAMPLE_COUNT), places.dense[0])
+    constraints, points = task.problem.constraints, make_sample_points(task)
+    dense = np.union1d(np.linspace(points.inputs[0], points.inputs[-1], SAMPLE_COUNT), points.inputs)
     demanded = constraints.min_transmission_angle
     # A margin, because the driven linkage is measured more accurately than here.
     greatest = 1.0 if demanded is None else math.cos(math.radians(demanded)) + LIMIT_MARGIN
     widest = constraints.max_link_ratio or math.inf
     kept, reasons = [], []
     for vectors in real:
-        one = make_sixbar(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
-        # Positions 7 to 9 are the lengths of the second fourbar.
-        if one.at[[A, B, C, 7, 8, 9]].min() < MIN_LENGTH_SHARE:
+        one = make_sixbar(vectors, (k, l_), points.inputs, float(task.inputs[0]), float(task.outputs[0]))
+        if _measure_fourbars(one).min() < MIN_LENGTH_SHARE:
             reasons.append("degenerate_link")
             continue
         if _compute_link_ratio(one) > widest * (1.0 + LIMIT_MARGIN):
             reasons.append("link_ratio")
             continue
-        errors = follow_sixbar(WATT_2, one.assembly, one.at, *places.dense).errors
-        # Written as "not <", so that NaN (not assembled at some pair) is rejected too.
-        if not np.abs(errors).max() < PAIR_TOLERANCE:
+        if not compute_max_error(one, points.dense) < PAIR_TOLERANCE:
             reasons.append("branch_defect")
             continue
         # Continuation ends at single precision of the path; refine before driving between the pairs.
-        one = descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE)
-        between = follow_sixbar(WATT_2, one.assembly, one.at, dense, np.zeros_like(dense))
-        if not np.isfinite(between.errors).all():
+        rotations = one.compute_rotations(points.inputs)
+        fit_task = build_fit_task(one.topology, rotations, l_ * points.outputs, points.roots, pack_topology, 0)
+        (fit,) = descend_softly([one.fit], fit_task, MAX_EXACT_STEPS, EXACT_TOLERANCE)
+        one = replace(one, fit=fit)
+        between = measure_motion(one, dense)
+        if between is None:
             reasons.append("branch_defect")
         elif np.abs(between.cosines).max() > greatest:
             reasons.append("transmission_angle")
@@ -168,10 +172,20 @@ def _screen_solutions(task: FunctionTask, real: Complex, k: float, l_: float) ->
 
 def _compute_link_ratio(one: SixbarCandidate) -> float:
     """Return the larger link ratio of the two fourbars, which does not depend on their free relative size."""
-    fourbars = np.array([[1.0, *one.at[[A, B, C]]], [1.0, *one.at[[7, 8, 9]]]])
+    fourbars = _measure_fourbars(one)
     return float((fourbars.max(axis=1) / fourbars.min(axis=1)).max())
+
+
+def _measure_fourbars(one: SixbarCandidate) -> Real:
+    """Return the lengths of both fourbars, which have the same ground: shape (2, 4)."""
+    at = dict(zip(one.topology.joints, one.fit.x[0::2] + 1j * one.fit.x[1::2], strict=True))
+    fourbars = (("O2", "O4", "B", "A"), ("O4", "O6", "D", "C"))
+    return np.array(
+        [[abs(at[a] - at[b]) for a, b in zip(loop, (*loop[1:], loop[0]), strict=True)] for loop in fourbars]
+    )
 
 
 def _compute_max_cosine(task: FunctionTask, one: SixbarCandidate) -> float:
     """Return the largest cosine of the transmission angles at the pairs."""
-    return float(np.abs(follow_sixbar(WATT_2, one.assembly, one.at, *make_sample_points(task).dense).cosines).max())
+    there = measure_motion(one, make_sample_points(task).inputs)
+    return math.inf if there is None else float(np.abs(there.cosines).max())

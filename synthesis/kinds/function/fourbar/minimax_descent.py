@@ -47,7 +47,7 @@ PENALTY_FACTOR = 10.0
 """Penalty of a constraint violation, radians of error per unit of violation."""
 
 SCALE_COLUMNS = (5, 6)
-"""Columns of a generator's scales."""
+"""Columns of the scales of a fourbar or slider-crank."""
 
 
 class Approximation(NamedTuple):
@@ -100,29 +100,40 @@ class Descent:
         The constraints.
     free : bool, shape (n,)
         Mask of a generator's open parameters.
+    scale_columns : pair of int
+        Columns of a generator's scales of input and output.
     """
 
-    def __init__(self, task: FunctionTask, dense: Followers, limits: Limits, free: NDArray[np.bool_]) -> None:
+    def __init__(
+        self,
+        task: FunctionTask,
+        dense: Followers,
+        limits: Limits,
+        free: NDArray[np.bool_],
+        scale_columns: tuple[int, int] = SCALE_COLUMNS,
+    ) -> None:
         self.task, self.dense, self.limits, self.free = task, dense, limits, free
+        self.scale_columns = scale_columns
         # With an open output range, errors are relative to it; otherwise the smallest range would always win.
-        self.relative = bool(free[6])
+        self.relative = bool(free[scale_columns[1]])
 
     def _compute_errors(self, generators: Followers, at: Real, sign: float) -> Real:
         errors = generators.errors(at[None], np.array([sign]))[0]
-        return np.asarray(errors / abs(at[6]) if self.relative else errors)
+        return np.asarray(errors / abs(at[self.scale_columns[1]]) if self.relative else errors)
 
     def _compute_slopes(self, generators: Followers, at: Real, sign: float, errors: Real) -> Real:
-        unit = abs(at[6]) if self.relative else 1.0
+        column = self.scale_columns[1]
+        unit = abs(at[column]) if self.relative else 1.0
         slopes = generators.derivatives(at, errors * unit, sign) / unit
         if self.relative:
             # The quotient's second part: errors are divided by the scale, and steps change its logarithm.
-            slopes[:, 6] -= errors
+            slopes[:, column] -= errors
         return np.pad(slopes, ((0, 0), (0, len(at) - slopes.shape[1])))  # the placement does not affect errors
 
     def _scale_rows(self, at: Real) -> tuple[Real, Real]:
         """Scale limits: return the permitted decrease and increase of ln of each scale, shapes (n,)."""
         low, high = np.zeros(len(at)), np.zeros(len(at))
-        for side, column in ((0, 5), (1, 6)):
+        for side, column in enumerate(self.scale_columns):
             # A step keeps the sign of a scale, so exactly one of the intervals applies.
             choice = [limits for limits in self.task.scales[side] if limits[0] * at[column] > 0.0]
             ends = sorted(abs(x) for x in choice[0])
@@ -185,7 +196,7 @@ class Descent:
         limited = np.hstack([g_slopes[:, free], np.zeros((len(g), 1)), -np.ones((len(g), 1))])
         # Scales have hard bounds; all other limits are soft, by the penalty, so that the program is always feasible.
         low, high = self._scale_rows(at)
-        bounded = np.isin(np.arange(len(at)), SCALE_COLUMNS)
+        bounded = np.isin(np.arange(len(at)), self.scale_columns)
         floors = [max(-trust, low[j]) if bounded[j] else -trust for j in free]
         ceilings = [min(trust, high[j]) if bounded[j] else trust for j in free]
         done = solve_linear_program(
@@ -226,7 +237,7 @@ class Descent:
             return float(weights @ errors**2) / unit, 2.0 * (weights * errors) @ slopes / unit
 
         low, high = self._scale_rows(at)
-        bounds = [(low[j], high[j]) if j in SCALE_COLUMNS else (-1.5, 1.5) for j in free]
+        bounds = [(low[j], high[j]) if j in self.scale_columns else (-1.5, 1.5) for j in free]
         limits = {
             "type": "ineq",
             "fun": lambda x: -self.limits.values(take_step(x))[0],

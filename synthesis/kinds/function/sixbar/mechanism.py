@@ -20,9 +20,8 @@ from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.kinds.function.design import Dials
 from synthesis.kinds.function.fourbar.task import DEFAULT_GROUND_LENGTH, FunctionTask, make_dials
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.sixbar.descents import TYPE_NUMBERS, SixbarCandidate
-from synthesis.kinds.function.sixbar.followers import follow_sixbar
-from synthesis.kinds.function.sixbar.kernels import ROW_SIZE, START, STEPHENSON_2, STEPHENSON_3, A, B, C, K
+from synthesis.kinds.function.sixbar.fits import SixbarCandidate, measure_motion
+from synthesis.kinds.function.statement.mechanism_types import SIXBARS
 from synthesis.model.linkage.answer import SixbarMechanism
 from synthesis.model.linkage.conversion import to_complex
 from synthesis.model.linkage.sixbars import build_sixbar, list_lengths
@@ -31,9 +30,6 @@ from synthesis.results.placement import convert_regions
 
 SAMPLE_COUNT = 49
 """Number of samples of the motion at which a sixbar must be within the box."""
-
-SUBSTEP_COUNT = 6
-"""Number of substeps between samples in which a Stephenson II is followed."""
 
 DIRECTION_COUNT, SIZE_FACTORS = 24, (1.0, 0.6, 1.6)
 """Number of directions, and size factors, tried for the second fourbar of a Watt II. With factor 1 the geometric means
@@ -61,7 +57,7 @@ SIZE_WEIGHT = 0.1
 
 LINK_JOINTS = {
     name: {link: tuple(joint for joint in joints if joint != "P") for link, joints in SIXBAR_LINKS[name].items()}
-    for name in TYPE_NUMBERS
+    for name in SIXBARS
 }
 """The joints on each link of the types."""
 
@@ -79,7 +75,10 @@ def build_function_sixbar(task: FunctionTask, found: SixbarCandidate) -> tuple[S
     frame, there = _select_frame(problem, found, list(_list_frames(task, found)))
     joints = {name: there.origin + there.along * complex(places[0]) for name, places in frame.joints.items()}
     turned = math.degrees(cmath.phase(there.along))
-    dials = make_dials(task, found.at, turned, turned + frame.output_frame)
+    # In the fit both angles count from its x axis, here from the ground line.
+    ground = _measure_ground_angle(found)
+    generator = np.array([0.0, 0.0, 0.0, found.start - ground, -ground, *found.scales])
+    dials = make_dials(task, generator, turned, turned + frame.output_frame)
     return build_sixbar(found.type, joints, LINK_JOINTS[found.type]), dials
 
 
@@ -99,78 +98,45 @@ def _select_frame(problem: FunctionProblem, found: SixbarCandidate, frames: list
 
 
 def _list_frames(task: FunctionTask, found: SixbarCandidate) -> Iterator[_Frame]:
-    """Yield the sixbar in its own frame, O2 at 0 and O4 at 1, in all relative placements of its fourbars.
+    """Yield the sixbar in its own frame, O2 at 0 and O4 at 1, in all relative placements of a Watt II's fourbars.
 
-    The first sample is the first target.
+    The first sample is the first target, the configuration of the answer.
     """
-    kind, at = TYPE_NUMBERS[found.type], found.at
-    first, last = float(task.inputs[0]), float(task.sample_inputs.max())
-    low = float(task.sample_inputs.min())
-    over = np.linspace(low, last, SAMPLE_COUNT)
-    inputs = np.concatenate([[first], over])
-    # The first sample is the first target, the configuration of the answer.
-    pins = at[A] * np.exp(1j * (at[START] + at[K] * inputs))
-    joints: dict[str, Complex] = {"O2": np.zeros_like(pins), "O4": np.ones_like(pins), "A": pins}
-    bits = found.assembly & 1 == 1, found.assembly & 2 == 2
-    if kind == STEPHENSON_2:
-        moving = _drive_stephenson_2(found, first, (low, last))
-        still = {"O2": np.zeros_like(moving["A"]), "O4": np.ones_like(moving["A"])}
-        yield _Frame(still | moving, 0.0)
-        return
-    joints["B"] = _close_dyad(pins, joints["O4"], at[B], at[C], left=bits[0])
-    rocker = joints["B"] - 1.0
-    if kind == STEPHENSON_3:
-        joints["C"] = pins + complex(at[7], at[8]) * (joints["B"] - pins) / at[B]
-        joints["O6"] = np.full_like(pins, complex(at[9], at[10]))
-        joints["D"] = _close_dyad(joints["C"], joints["O6"], at[11], at[12], left=bits[1])
+    low, high = float(task.sample_inputs.min()), float(task.sample_inputs.max())
+    inputs = np.concatenate([[float(task.inputs[0])], np.linspace(low, high, SAMPLE_COUNT)])
+    motion = measure_motion(found, inputs)
+    if motion is None:
+        raise ValueError("the sixbar cannot be assembled at all inputs")
+    joints = {name: motion.places[:, node] for name, node in found.topology.joints.items()}
+    pivot, ground = joints["O2"], joints["O4"] - joints["O2"]
+    joints = {name: (places - pivot) / ground for name, places in joints.items()}
+    if found.type != "watt_2":
         yield _Frame(joints, 0.0)
         return
-    crank = at[7] * np.exp(1j * at[10]) * rocker / at[C]
-    pin = _close_dyad(crank, joints["O4"], at[8], at[9], left=bits[1])
-    lengths = np.array([1.0, *at[:3]]), np.array([1.0, *at[7:10]])
+    centre, own = joints["O4"], ("C", "D", "O6")
+    fourbars = (("O2", "A", "B"), ("O6", "D", "C"))
     # Size of the second fourbar at which both have the same geometric mean of longest and shortest link.
-    agreeing = math.sqrt(math.prod([lengths[0].min() * lengths[0].max(), 1.0 / (lengths[1].min() * lengths[1].max())]))
+    first, second = (_measure_fourbar({name: joints[name][0] for name in ("O4", *names)}) for names in fourbars)
+    agreeing = math.sqrt(first.min() * first.max() / (second.min() * second.max()))
     for size in SIZE_FACTORS:
         for turn in np.arange(DIRECTION_COUNT) * (math.tau / DIRECTION_COUNT):
             along = agreeing * size * cmath.rect(1.0, turn)
-            second = {"C": 1.0 + along * crank, "D": 1.0 + along * pin, "O6": np.full_like(pins, 1.0 + along)}
             # The second fourbar turns and grows about O4, which both share.
-            yield _Frame(joints | second, math.degrees(turn))
+            moved = {name: centre + along * (joints[name] - centre) for name in own}
+            yield _Frame(joints | moved, math.degrees(turn))
 
 
-def _close_dyad(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Complex:
-    """Return the joint of a dyad from pins q and pivots o, to the left or right of the line from q to o."""
-    across = o - q
-    r = np.abs(across)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        along = (d * d + r * r - e * e) / (2.0 * r)
-    # Rounding may give a small negative value at a toggle.
-    height = np.sqrt(np.maximum(d * d - along * along, 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(q + across / r * (along + (1j if left else -1j) * height))
+def _measure_ground_angle(found: SixbarCandidate) -> float:
+    """Return the angle of O2 → O4 in a fit."""
+    first, second, *_ = found.topology.fixed_pivots
+    x, y = found.fit.x[2 * second : 2 * second + 2] - found.fit.x[2 * first : 2 * first + 2]
+    return math.atan2(y, x)
 
 
-def _drive_stephenson_2(found: SixbarCandidate, first: float, ends: tuple[float, float]) -> dict[str, Complex]:
-    """Drive a Stephenson II from the first target to both ends of its range; the kernel follows τ in small steps."""
-    at = found.at.copy()
-    left = found.assembly & 1 == 1
-    begun = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([first]), np.zeros(1)).tau
-    places = [(first, begun)]
-    for end in ends:
-        # Each half starts at the first target again, where τ is known.
-        tau = begun
-        for n, u in enumerate(np.linspace(first, end, SUBSTEP_COUNT * SAMPLE_COUNT + 1)):
-            at[ROW_SIZE - 1] = tau
-            tau = follow_sixbar(STEPHENSON_2, found.assembly, at, np.array([u]), np.zeros(1)).tau
-            # Substeps keep Newton's method on its branch; only the samples are stored.
-            if n % SUBSTEP_COUNT == 0:
-                places.append((float(u), tau))
-    inputs, taus = np.array(places).T
-    turn = np.exp(1j * (at[START] + at[K] * inputs))
-    pin, c = at[A] * turn, complex(at[7], at[8]) * turn
-    b = pin + at[B] * np.exp(1j * taus) * turn
-    d = _close_dyad(c, b, at[10], at[9], left=left)
-    return {"A": pin, "B": b, "C": c, "D": d, "E": b + complex(at[11], at[12]) * (d - b) / at[9]}
+def _measure_fourbar(loop: dict[str, complex]) -> Real:
+    """Return the lengths of a fourbar from its joints in the order of its loop."""
+    places = np.array(list(loop.values()))
+    return np.asarray(np.abs(np.roll(places, -1) - places))
 
 
 def _measure_unevenness(found: SixbarCandidate, joints: dict[str, Complex]) -> float:

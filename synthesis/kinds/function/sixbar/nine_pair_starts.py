@@ -6,17 +6,19 @@ If a sixbar meets all pairs exactly, it is among the complete set of sixbars thr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from synthesis.fit.linkage.descent import Fit
+from synthesis.fit.linkage.topology import FUNCTION_SIXBARS
 from synthesis.kinds.function.nine_pairs.continuation import find_all_watts
 from synthesis.kinds.function.nine_pairs.system import PAIR_COUNT
-from synthesis.kinds.function.sixbar.descents import SixbarCandidate
-from synthesis.kinds.function.sixbar.followers import follow_sixbar
-from synthesis.kinds.function.sixbar.kernels import ROW_SIZE, START, WATT_2, ZERO, A, B, C, K, L
+from synthesis.kinds.function.sixbar.fits import SixbarCandidate, evaluate_errors
 
 
 class NinePairSixbars(NamedTuple):
@@ -50,26 +52,27 @@ def find_sixbars_through_nine(
     watts = find_all_watts(k * nine[0], l_ * nine[1], rng, progress, ways=1)
     found = []
     for vectors in watts.real:
-        one = make_sixbar(vectors, k, l_, *(float(x) for x in nine[:, 0]))
-        errors = follow_sixbar(WATT_2, one.assembly, one.at, *pairs).errors
-        # NaN means that the sixbar cannot be assembled at some pair in the assembly of the first.
-        if np.isfinite(errors).all():
-            found.append(one._replace(error=float(np.sqrt(np.mean(errors**2)))))
+        one = make_sixbar(vectors, (k, l_), pairs[0], float(nine[0, 0]), float(nine[1, 0]))
+        evaluated = evaluate_errors(one, *pairs)
+        # Others cannot be assembled at some pair in the assembly of the first.
+        if evaluated is not None:
+            found.append(replace(one, error=float(np.sqrt(np.mean(evaluated[1] ** 2)))))
     return NinePairSixbars(sorted(found, key=lambda one: one.error), watts.complete)
 
 
-def make_sixbar(vectors: Complex, k: float, l_: float, first_input: float, first_output: float) -> SixbarCandidate:
-    """Convert a real solution, vectors a, c, d, e of shape (4,), to a row of the sixbar kernels.
+def make_sixbar(
+    vectors: Complex, scales: tuple[float, float], inputs: Real, first_input: float, first_output: float
+) -> SixbarCandidate:
+    """Convert a real solution, vectors a, c, d, e of shape (4,), to a candidate.
 
-    ``k`` and ``l_`` are the scales; ``first_input`` and ``first_output`` the values of the first pair.
+    ``scales`` are k and l, ``inputs`` (m,) those of the pairs, ``first_input`` and ``first_output`` the values of the
+    pair at which the vectors stand.
     """
     a, c, d, e = (complex(z) for z in vectors)
-    at = np.zeros(ROW_SIZE)
-    at[[A, B, C, 7, 8, 9]] = abs(a), abs(1.0 + c - a), abs(c), abs(d), abs(1.0 + e - d), abs(e)
-    # Angles of the crank and the output at value 0 follow from those at the first pair.
-    at[START], at[ZERO] = np.angle(a) - k * first_input, np.angle(e) - l_ * first_output
-    at[K], at[L] = k, l_
-    at[10] = np.angle(d) - np.angle(c)
-    # The assembly bits: whether each dyad's joint is to the left of the line from its pin to its pivot.
-    sides = [((1.0 - pin).conjugate() * (1.0 + arm - pin)).imag > 0.0 for pin, arm in ((a, c), (d, e))]
-    return SixbarCandidate("watt_2", int(sides[0]) | int(sides[1]) << 1, at, 0.0)
+    # The second fourbar, with ground 1 as the first, continues the ground line.
+    joints = np.array([0.0, a, 1.0, 1.0 + c, 1.0 + d, 2.0, 2.0 + e])
+    # Turned so that the output is at its value.
+    joints *= np.exp(1j * (scales[1] * first_output - math.atan2(e.imag, e.real)))
+    x = np.column_stack([joints.real, joints.imag]).ravel()
+    fit = Fit(FUNCTION_SIXBARS["watt_2"], x, scales[0] * (inputs - first_input))
+    return SixbarCandidate("watt_2", fit, inputs, first_input, scales, 0.0)

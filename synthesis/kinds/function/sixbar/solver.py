@@ -1,71 +1,108 @@
 """Search for sixbars whose output follows a function or meets pairs.
 
-1. Several thousand sixbars of each type are sampled and composed (:mod:`~synthesis.kinds.function.sixbar.starts`).
-2. The best distinct ones are fitted by least squares under constraints with the Levenberg-Marquardt method, a few
-   milliseconds each. The best of these continue along the curved valleys that contain the minima
-   (:mod:`synthesis.numerics.geodesic`).
-3. The best results are optimised by the criterion under all constraints, as fourbars are
-   (:mod:`~synthesis.kinds.function.fourbar.minimax_descent`).
+1. Thousands of sixbars are drawn near the function (:mod:`~synthesis.kinds.function.sixbar.starts`).
+2. The best descend a few steps at :data:`FEW_POINT_COUNT` of the points, with the constraints as penalties
+   (:mod:`synthesis.fit.linkage`).
+3. The best distinct ones are followed along their curved valleys (:mod:`synthesis.numerics.geodesic`), and the best of
+   these farther, in the end at all points.
+4. Approximations are optimised by the criterion under all constraints
+   (:mod:`~synthesis.kinds.function.sixbar.criterion`).
 
-For the approximation of given pairs more sixbars are sampled and selected in more stages
-(:mod:`~synthesis.kinds.function.sixbar.exact_pairs`). If only Watt II sixbars are requested for nine or more pairs, and
-none met them, all sixbars through nine of the pairs are computed too
-(:mod:`~synthesis.kinds.function.sixbar.nine_pair_starts`).
+The least-squares function of pairs has many minima, and most minima close to zero are not zero. Therefore small batches
+of sixbars are drawn, and after each batch the best of all are perturbed along the directions in which the residuals
+change least, and followed again (basin hopping, Wales & Doye 1997, doi:10.1021/jp970984n). The search ends when a
+sixbar meets the pairs.
+
+If only Watt II sixbars are requested for nine or more pairs, and none met them, all sixbars through nine of the pairs
+are computed too (:mod:`~synthesis.kinds.function.sixbar.nine_pair_starts`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.message import compose
-from synthesis.kinds.function.fourbar.minimax_descent import Descent
+from synthesis.fit.linkage.descent import (
+    Fit,
+    FitTask,
+    descend_softly,
+    follow_valleys,
+    perturb_along_valley,
+    sort_fits,
+)
+from synthesis.fit.linkage.setting import RATIO
+from synthesis.fit.linkage.topology import FUNCTION_SIXBARS, Topology
 from synthesis.kinds.function.fourbar.task import FunctionTask
 from synthesis.kinds.function.nine_pairs.system import PAIR_COUNT, SOLUTION_COUNT
-from synthesis.kinds.function.sixbar.descents import (
-    TYPE_NUMBERS,
-    Descents,
+from synthesis.kinds.function.sixbar.criterion import MAX_LAST_ROUNDS, MAX_ROUNDS, optimize_sixbar
+from synthesis.kinds.function.sixbar.fits import (
     SixbarCandidate,
-    select_best,
-    select_best_starts,
+    build_fit_task,
+    build_packer,
+    compute_max_cosine,
+    evaluate_errors,
 )
-from synthesis.kinds.function.sixbar.exact_pairs import EFFORTS as FOR_PAIRS
-from synthesis.kinds.function.sixbar.exact_pairs import PairSearch
-from synthesis.kinds.function.sixbar.followers import SixbarFollower, SixbarLimits, follow_sixbar
-from synthesis.kinds.function.sixbar.kernels import IS_USED, K, L
 from synthesis.kinds.function.sixbar.nine_pair_starts import find_sixbars_through_nine
-from synthesis.kinds.function.sixbar.starts import Starts, sample_starts
+from synthesis.kinds.function.sixbar.starts import draw_starts
 from synthesis.kinds.function.statement.mechanism_types import Sixbar
 from synthesis.model.kind import Progress, scale_progress
+from synthesis.numerics.augmented_lagrangian import MIN_WEIGHT
+from synthesis.results.ranking import select_distinct
 from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE
-
-SAMPLE_COUNTS: dict[Sixbar, int] = {"watt_2": 4000, "stephenson_3": 6000, "stephenson_2": 40_000}
-"""Number of sampled sixbars by type."""
 
 
 class Effort(NamedTuple):
-    """Effort for one type: number of least-squares descents for a function, and for exact pairs; and number of those
-    that continue along valleys."""
+    """Effort of a batch: number of drawn sixbars; for each stage at few points, numbers of sixbars and of steps; the
+    same at all points; and number of perturbations."""
 
-    descended: int
-    for_exact: int
-    valleys: int
+    drawn: int
+    descended: tuple[int, int]
+    followed: tuple[int, int]
+    followed_farther: tuple[int, int]
+    followed_to_the_end: tuple[int, int]
+    hops: int
 
 
-FULL_EFFORT = Effort(150, 400, 40)
+PAIR_EFFORT = Effort(3000, (150, 20), (75, 100), (16, 400), (8, 300), 32)
+"""Effort of a batch to meet pairs."""
 
-EFFORTS: dict[Sixbar, Effort] = {
-    "watt_2": FULL_EFFORT,
-    "stephenson_3": FULL_EFFORT,
-    "stephenson_2": Effort(100, 120, 16),
-}
-"""Effort by type. A Stephenson II, whose configuration must be solved iteratively, takes three times as long."""
+FUNCTION_EFFORT = Effort(6000, (300, 40), (100, 60), (24, 150), (8, 200), 96)
+"""Effort to approximate a function, or to meet so few pairs that many sixbars do."""
 
-MAX_IMPROVED, VALLEY_STEPS = 8, 150
-"""Number of sixbars that are optimised until convergence, and number of steps along a valley."""
+MIN_BATCHES, MAX_BATCHES, PROMISING_ERROR = 4, 16, 1e-3
+"""Numbers of batches for pairs: how many are drawn in any case, and at most as long as the RMS error of the best
+sixbar, radians, promises that one meets the pairs."""
+
+FEW_POINT_COUNT = 15
+"""Number of points in the first descents and valleys."""
+
+START_ANGLE_SLACK = 8.0
+"""Degrees by which the transmission angle of a start may be below its limit."""
+
+FEW_STEPS, ALL_STEPS = 12, 24
+"""Number of equal steps of the input at which the constraints are penalties, at few and at all points."""
+
+BEST_COUNT = 2
+"""Number of sixbars whose maximum error is decreased to the end."""
+
+POOL_SIZE = 16
+"""Number of sixbars from which the search goes on after a batch."""
+
+HOP_GROUP, MAX_HOP_STEPS, HOP_SHARE = 8, 150, 0.35
+"""Number of perturbations at a time, steps along the valley after each, and probability that the best sixbar is
+perturbed. Otherwise the next one is chosen with the same probability, and so on."""
+
+MIN_SEPARATION = 0.1
+"""Minimum separation of distinct sixbars, in ground lengths."""
+
+OPEN_SCALE_COUNT = 4
+"""Number of values tried of a scale that is open between limits; the optimisation by the criterion moves them."""
 
 SAMPLE_POINT_COUNT = 61
 """Number of samples of a function in the least squares, denser towards the ends of the range."""
@@ -73,20 +110,8 @@ SAMPLE_POINT_COUNT = 61
 MINIMAX_SAMPLE_COUNT, SQUARES_SAMPLE_COUNT = 401, 121
 """Numbers of samples at which the maximum error, or the mean square error, is minimised."""
 
-MIN_LIMIT_POINTS = 49
-"""Minimum number of inputs over the range of pairs at which limits are checked."""
-
-LIMIT_WEIGHTS = (0.1, 1.0)
-"""Weights of limits relative to errors in successive descents."""
-
-MAX_STEPS, DECREASE_TOLERANCE = 80, 1e-7
-"""Descent: maximum number of steps, and relative decrease at which it ends."""
-
 MAX_EXACT_STEPS, EXACT_TOLERANCE = 200, 1e-13
 """Last descent to exact pairs: maximum number of steps, and relative decrease at which it ends."""
-
-MAX_ROUNDS, MAX_SQUARE_ROUNDS = 60, 15
-"""Maximum number of steps in the final optimisation: linear programs, and a third of the number of quadratic ones."""
 
 SEARCH_SHARE = 0.3
 """Share of the progress assigned to the search before all sixbars through nine pairs are computed."""
@@ -101,22 +126,38 @@ PAIR_TOLERANCE = math.radians(1e-6)
 MAX_FOLLOWED, MAX_FOLLOWED_STEPS = 16, 2000
 """Maximum number of sixbars through nine pairs that are followed along their valleys, and number of steps."""
 
-MAX_SEARCHES, PROMISING_ERROR = 2, 1e-3
-"""Maximum number of consecutive searches for pairs, and RMS error, radians, above which no other search follows."""
+MET_ERROR = 5e-9
+"""RMS error at few pairs, radians, that ends the perturbations, a third of :data:`PAIR_TOLERANCE`."""
 
-CONVERGED_ERROR = 1e-10
-"""Maximum error, radians, that counts as rounding: no further improvement is possible."""
+NEAR_ERROR, NEAREST_COUNT, MAX_NEAREST_STEPS = 1e-7, 4, 1000
+"""RMS error at few pairs, radians, below which the nearest sixbars are followed to the end of their valleys; their
+number, and number of steps."""
 
 
 class SamplePoints(NamedTuple):
     """Sample points of a task, in order of the input.
 
-    ``points`` (4, m) as for :func:`~synthesis.kinds.function.sixbar.residuals.evaluate_rows`; ``dense`` (2, n): inputs
+    ``inputs``, ``outputs`` and ``roots`` (m,), roots of weights whose sum is 1, are fitted; ``dense`` (2, n) are inputs
     and outputs at which the criterion measures the error.
     """
 
-    points: Real
+    inputs: Real
+    outputs: Real
+    roots: Real
     dense: Real
+
+    @property
+    def reference(self) -> float:
+        """Input of the reference position."""
+        return float(self.inputs[len(self.inputs) // 2])
+
+    def select_few(self) -> SamplePoints:
+        """Return evenly spread points, the ends among them."""
+        m = len(self.inputs)
+        rows = np.unique(np.round(np.linspace(0, m - 1, min(m, FEW_POINT_COUNT))).astype(int))
+        return SamplePoints(
+            self.inputs[rows], self.outputs[rows], np.full(len(rows), 1.0 / math.sqrt(len(rows))), self.dense
+        )
 
 
 def make_sample_points(task: FunctionTask) -> SamplePoints:
@@ -125,27 +166,18 @@ def make_sample_points(task: FunctionTask) -> SamplePoints:
     if function is not None and not exact:
         # Denser towards the ends, where errors of approximations are largest.
         u = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SAMPLE_POINT_COUNT))
-        weights = np.full(SAMPLE_POINT_COUNT, 1.0 / math.sqrt(SAMPLE_POINT_COUNT))
+        roots = np.full(SAMPLE_POINT_COUNT, 1.0 / math.sqrt(SAMPLE_POINT_COUNT))
         square = task.problem.aim == "least_squares"
         if square:
             # Weights equal to the spacing turn the sum into the mean over the range.
-            weights = np.sqrt(np.gradient(u) / np.gradient(u).sum())
-        limited = np.full(SAMPLE_POINT_COUNT, 1.0 / math.sqrt(SAMPLE_POINT_COUNT))
+            roots = np.sqrt(np.gradient(u) / np.gradient(u).sum())
         dense = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SQUARES_SAMPLE_COUNT if square else MINIMAX_SAMPLE_COUNT))
         along = function.share_along
-        return SamplePoints(np.stack([u, along(u), weights, limited]), np.stack([dense, along(dense)]))
+        return SamplePoints(u, along(u), roots, np.stack([dense, along(dense)]))
     inputs, outputs = (task.inputs, task.outputs) if exact else (task.sample_inputs, task.sample_outputs)
     order = np.argsort(inputs)
     pairs = np.stack([inputs[order], outputs[order]])
-    low, high = (0.0, 1.0) if function is not None else (pairs[0, 0], pairs[0, -1])
-    # Limits hold between the pairs, too, at points without an error.
-    between = np.setdiff1d(np.linspace(low, high, MIN_LIMIT_POINTS), pairs[0])
-    u = np.concatenate([pairs[0], between])
-    v = np.concatenate([pairs[1], np.interp(between, *pairs)])
-    # Zero weight marks points that have no target.
-    weights = np.concatenate([np.full(pairs.shape[1], 1.0 / math.sqrt(pairs.shape[1])), np.zeros(len(between))])
-    points = np.stack([u, v, weights, np.full(len(u), 1.0 / math.sqrt(len(u)))])
-    return SamplePoints(np.ascontiguousarray(points[:, np.argsort(u)]), pairs)
+    return SamplePoints(pairs[0], pairs[1], np.full(len(order), 1.0 / math.sqrt(len(order))), pairs)
 
 
 class SixbarSearch:
@@ -160,57 +192,87 @@ class SixbarSearch:
     """
 
     def __init__(self, task: FunctionTask, least: float | None = None) -> None:
-        demanded = task.problem.constraints.min_transmission_angle
+        problem = task.problem
+        demanded = problem.constraints.min_transmission_angle
         self.least = least if least is not None else SOUND_TRANSMISSION_ANGLE if demanded is None else demanded
-        self.task, self.places = task, make_sample_points(task)
-        self.exact, self.square = task.problem.aim == "precision", task.problem.aim == "least_squares"
-        limits = self.least, task.problem.constraints.max_link_ratio
-        self._descents = Descents(self.places.points, *limits)
-        self._pairs = PairSearch(self.places.points, *limits, CONVERGED_ERROR)
+        self.task, self.points = task, make_sample_points(task)
+        self.few = self.points.select_few()
+        self.pack_limits = build_packer(problem, self.least)
+        self.exact = problem.aim == "precision"
+        self.meets_pairs = problem.function is None and not self.exact
         self.weighed = 0
         self.remark = ""
         """Statement about all sixbars of a type, for the summary."""
 
     def find_sixbars(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
         """Find the best sixbars of a type, best first."""
-        if self.task.problem.function is None and not self.exact:
-            reached = self._search_pairs(name, rng, progress)
-        else:
-            reached = self._descend_starts(
-                name, self._sample_starts(name, SAMPLE_COUNTS[name], rng, progress), progress
-            )
-        improved = [self._optimize_sixbar(one) for one in reached]
-        improved.sort(key=lambda one: one.error)
-        return [one for one in improved if math.isfinite(one.error)]
-
-    def _sample_starts(
-        self, name: Sixbar, count: int, rng: np.random.Generator, progress: Progress, *, wider: bool = False
-    ) -> Starts:
-        drawn = sample_starts(
-            TYPE_NUMBERS[name], self.task, self.places.points[0], self.places.points[1], count, rng, wider=wider
-        )
-        self.weighed += len(drawn.at)
-        progress(0.1, compose("function-sixbars-of-type", count=len(drawn.at), type=name))
-        return drawn
-
-    def _search_pairs(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
-        """Search for sixbars that meet pairs; repeat with new samples if the pairs are almost met."""
         follows = self.task.problem.follows_watts
         searching = scale_progress(progress, 0.0, SEARCH_SHARE) if follows else progress
-        reached: list[SixbarCandidate] = []
-        for n in range(MAX_SEARCHES):
-            # Repeat only if the best is close to exact but not exact.
-            if reached and not CONVERGED_ERROR < reached[0].error < PROMISING_ERROR:
-                break
-            part = scale_progress(searching, n / MAX_SEARCHES, (n + 1) / MAX_SEARCHES)
-            drawn = self._sample_starts(name, FOR_PAIRS[name].drawn, rng, part, wider=True)
-            reached = select_best(
-                [*reached, *self._pairs.find_sixbars(name, drawn, MAX_IMPROVED, rng, part)], MAX_IMPROVED
-            )
+        choices, reached = self._list_scales(rng), list[SixbarCandidate]()
+        for n, scales in enumerate(choices):
+            part = scale_progress(searching, n / len(choices), (n + 1) / len(choices))
+            reached += self._search_scales(name, scales, len(choices), rng, part)
+        reached.sort(key=lambda one: one.error)
         # All solutions through nine pairs are computed only if the search failed, since that takes many seconds.
-        if follows and not (reached and reached[0].error < CONVERGED_ERROR):
-            reached = select_best([*self._solve_nine_pairs(rng, progress), *reached], MAX_IMPROVED)
-        return reached
+        if follows and not (reached and reached[0].error < PAIR_TOLERANCE):
+            reached = self._select_best([*self._solve_nine_pairs(rng, progress), *reached])
+        improved = [self._optimize(one) for one in reached]
+        improved.sort(key=lambda one: one.error)
+        if self.task.problem.aim == "minimax" and improved and improved[0].error > PAIR_TOLERANCE:
+            # The maximum error decreases slowly in the end, along a curved valley.
+            improved[:BEST_COUNT] = [self._optimize(one, MAX_LAST_ROUNDS) for one in improved[:BEST_COUNT]]
+            improved.sort(key=lambda one: one.error)
+        return [one for one in improved if math.isfinite(one.error)]
+
+    def _optimize(self, one: SixbarCandidate, rounds: int = MAX_ROUNDS) -> SixbarCandidate:
+        """Optimise a sixbar by the criterion, with at most ``rounds`` linear programs."""
+        return optimize_sixbar(self.task, one, self.points.dense, self.pack_limits, rounds)
+
+    def _list_scales(self, rng: np.random.Generator) -> list[tuple[float, float]]:
+        """Return pairs of scales: all given ones, or some of those within their limits."""
+        sides = [
+            [
+                float(low + (high - low) * share)
+                for low, high in choice
+                for share in (rng.random(OPEN_SCALE_COUNT) if low < high else [0.0])
+            ]
+            for choice in self.task.scales
+        ]
+        chosen = [(k, l_) for k in sides[0] for l_ in sides[1]]
+        most = OPEN_SCALE_COUNT * max(len(choice) for choice in self.task.scales)
+        # Both scales open: a random selection, because all combinations would be too many.
+        return chosen if len(chosen) <= most else [chosen[k] for k in rng.choice(len(chosen), most, replace=False)]
+
+    def _search_scales(
+        self, name: Sixbar, scales: tuple[float, float], shared: int, rng: np.random.Generator, progress: Progress
+    ) -> list[SixbarCandidate]:
+        """Search with given scales, for pairs until a sixbar meets them."""
+        search = _ScaleSearch(FUNCTION_SIXBARS[name], scales, self)
+        effort, batches = (PAIR_EFFORT, MAX_BATCHES) if self.meets_pairs else (FUNCTION_EFFORT, 1)
+        reached: list[Fit] = []
+        for n in range(batches):
+            part = scale_progress(progress, n / batches, (n + 1) / batches)
+            search.run_batch(name, effort, shared, rng, part)
+            hopeless = n + 1 >= MIN_BATCHES and search.nearest_error > PROMISING_ERROR
+            if search.nearest_error < NEAR_ERROR or hopeless or n + 1 == batches:
+                reached = search.follow_to_the_end(*effort.followed_to_the_end)
+            # At few points a sixbar may meet pairs and constraints that it does not meet at all of them.
+            if hopeless or (reached and self._meets_pairs(name, reached[0], scales)):
+                break
+        if self.exact:
+            reached = search.meet_exactly(reached)
+        return [self._build_candidate(name, fit, scales) for fit in reached]
+
+    def _build_candidate(self, name: Sixbar, fit: Fit, scales: tuple[float, float]) -> SixbarCandidate:
+        return SixbarCandidate(name, fit, self.points.inputs, self.points.reference, scales, measure_rms(fit))
+
+    def _meets_pairs(self, name: Sixbar, fit: Fit, scales: tuple[float, float]) -> bool:
+        """Return whether a fit meets all pairs."""
+        one = self._build_candidate(name, fit, scales)
+        return one.error < PAIR_TOLERANCE and compute_max_error(one, self.points.dense) < PAIR_TOLERANCE
+
+    def _select_best(self, found: Sequence[SixbarCandidate]) -> list[SixbarCandidate]:
+        return sorted(found, key=lambda one: one.error)[:MAX_FOLLOWED]
 
     def _solve_nine_pairs(self, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
         """Fit the closest of all Watt II sixbars through nine of the pairs to all pairs."""
@@ -222,69 +284,143 @@ class SixbarSearch:
                 compose("function-paths-to-nine-followed", done=done, count=SOLUTION_COUNT),
             )
 
-        (k, _), (l_, _) = (choices[0] for choices in self.task.scales)
-        through = find_sixbars_through_nine(self.places.dense, k, l_, rng, report_share)
+        scales = self.task.scales[0][0][0], self.task.scales[1][0][0]
+        through = find_sixbars_through_nine(self.points.dense, *scales, rng, report_share)
         near = [one for one in through.found if one.error < MAX_NEAR_ERROR][:MAX_FOLLOWED]
-        reached = select_best(
-            (
-                self._descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE)
-                if one.error < MAX_REFINABLE_ERROR
-                # Almost exact ones converge quadratically; the others follow their valleys.
-                else self._descents.follow_from(one, LIMIT_WEIGHTS[-1], MAX_FOLLOWED_STEPS)
-                for one in near
-            ),
-            MAX_FOLLOWED,
-        )
+        reached = []
+        for one in near:
+            task = self.build_task(one.topology, scales, self.points, one.reference, ALL_STEPS)
+            # Almost exact ones converge quadratically; the others follow their valleys.
+            if one.error < MAX_REFINABLE_ERROR:
+                fits = descend_softly([one.fit], task, MAX_EXACT_STEPS, EXACT_TOLERANCE, MIN_WEIGHT)
+            else:
+                fits = follow_valleys([one.fit], task, MAX_FOLLOWED_STEPS)
+            reached += [replace(one, fit=fit, error=measure_rms(fit)) for fit in sort_fits(fits)]
         if through.complete:
-            met = sum(self._compute_max_error(one) < PAIR_TOLERANCE for one in reached)
+            met = sum(compute_max_error(one, self.points.dense) < PAIR_TOLERANCE for one in reached)
             self.remark = compose(
                 # The list was cut off at this number, so more may exist.
                 "function-many-watts-meet-pairs" if met == MAX_FOLLOWED else "function-watts-meet-pairs",
                 count=SOLUTION_COUNT,
-                pairs="nine" if self.places.dense.shape[1] == PAIR_COUNT else "more",
+                pairs="nine" if self.points.dense.shape[1] == PAIR_COUNT else "more",
                 met=met,
             )
         return reached
 
-    def _descend_starts(self, name: Sixbar, drawn: Starts, progress: Progress) -> list[SixbarCandidate]:
-        """Fit starts by least squares to a function, or to exact pairs."""
-        effort, descents = EFFORTS[name], self._descents
-        begun = select_best_starts(
-            name, drawn, descents.costs(name, drawn), effort.for_exact if self.exact else effort.descended
-        )
-        found = []
-        for one in begun:
-            for weight in LIMIT_WEIGHTS:
-                # A small weight first lets the descent pass through infeasible sixbars.
-                one = descents.descend_one(one, weight, MAX_STEPS, DECREASE_TOLERANCE)
-            found.append(descents.descend_one(one, 0.0, MAX_EXACT_STEPS, EXACT_TOLERANCE) if self.exact else one)
-        reached = select_best(found, effort.valleys)
-        progress(0.6, compose("function-improving-sixbars", count=len(begun), type=name))
-        if self.exact:
-            # With zero weight the valley is followed only by fits that have not met the pairs yet.
-            return select_best([descents.follow_from(one, 0.0, 2 * VALLEY_STEPS) for one in reached], effort.valleys)
-        return select_best(
-            [descents.follow_from(one, LIMIT_WEIGHTS[-1], VALLEY_STEPS) for one in reached], MAX_IMPROVED
-        )
+    def build_task(
+        self, topology: Topology, scales: tuple[float, float], points: SamplePoints, reference: float, steps: int
+    ) -> FitTask:
+        """Build the fit of a topology to points with given scales."""
+        rotations = scales[0] * (points.inputs - reference)
+        return build_fit_task(topology, rotations, scales[1] * points.outputs, points.roots, self.pack_limits, steps)
 
-    def _compute_max_error(self, one: SixbarCandidate) -> float:
-        """Return a sixbar's maximum error, radians, at the dense samples; NaN if it cannot be assembled at one."""
-        return float(
-            np.abs(follow_sixbar(TYPE_NUMBERS[one.type], one.assembly, one.at, *self.places.dense).errors).max()
-        )
 
-    def _optimize_sixbar(self, one: SixbarCandidate) -> SixbarCandidate:
-        """Optimise a sixbar by the criterion under all constraints."""
-        kind, greatest = TYPE_NUMBERS[one.type], self._compute_max_error(one)
-        # Exact pairs, or a rounding error: nothing is left to optimize.
-        if self.exact or greatest < CONVERGED_ERROR:
-            return one._replace(error=greatest)
-        follower = SixbarFollower(kind, one.assembly, *self.places.dense)
-        limits = SixbarLimits(self.task, kind, one.assembly, self.places.points[0], self.least, every=self.square)
-        free = IS_USED[kind].copy()
-        # The final optimization may move open scales.
-        free[[K, L]] = self.task.free[5:]
-        descent = Descent(self.task, follower, limits, free)
-        improve = descent.least_squares if self.square else descent.minimax
-        done = improve(one.at, 1.0, MAX_SQUARE_ROUNDS if self.square else MAX_ROUNDS)
-        return one._replace(at=done.generator, error=done.error)
+class _ScaleSearch:
+    """Search for sixbars of a topology with given scales.
+
+    ``pool`` are the best distinct fits at few points, the nearest first, and ``unperturbed`` those before they were
+    perturbed, which belong to more valleys.
+    """
+
+    def __init__(self, topology: Topology, scales: tuple[float, float], search: SixbarSearch) -> None:
+        self.topology, self.search, self.few, self.points = topology, search, search.few, search.points
+        self.scale, self.pool, self.unperturbed = scales[1], list[Fit](), list[Fit]()
+        reference = self.points.reference
+        self.few_rotations = scales[0] * (self.few.inputs - reference)
+        self.rotations = scales[0] * (self.points.inputs - reference)
+        self.few_task = search.build_task(topology, scales, self.few, reference, FEW_STEPS)
+        self.task = search.build_task(topology, scales, self.points, reference, ALL_STEPS)
+
+    @property
+    def nearest_error(self) -> float:
+        """RMS error of the nearest fit at few points, radians."""
+        return measure_rms(self.pool[0]) if self.pool else math.inf
+
+    def run_batch(
+        self, name: Sixbar, effort: Effort, shared: int, rng: np.random.Generator, progress: Progress
+    ) -> None:
+        """Draw, descend and follow sixbars into the pool, and perturb the pool."""
+        search = self.search
+        drawn = math.ceil(effort.drawn / shared)
+        starts = draw_starts(
+            self.topology,
+            self.few_rotations,
+            self.scale * self.few.outputs,
+            compute_max_cosine(max(search.least - START_ANGLE_SLACK, 0.0)),
+            float(search.pack_limits(self.topology)[RATIO]),
+            drawn,
+            math.ceil(effort.descended[0] / shared),
+            int(rng.integers(2**31)),
+        )
+        search.weighed += drawn
+        progress(0.1, compose("function-sixbars-of-type", count=drawn, type=name))
+        found = descend_softly(starts, self.few_task, effort.descended[1])
+        progress(0.3, compose("function-following-sixbars", count=drawn, type=name))
+        for count, steps in (effort.followed, effort.followed_farther):
+            found = follow_valleys(select_distinct_fits(found, math.ceil(count / shared)), self.few_task, steps)
+        self.pool = select_distinct_fits([*self.pool, *found], POOL_SIZE)
+        progress(0.7, compose("function-improving-sixbars", count=drawn, type=name))
+        self.unperturbed = self.pool[: effort.followed_to_the_end[0]]
+        self._perturb_pool(effort.hops, rng)
+        if MET_ERROR < self.nearest_error < NEAR_ERROR:
+            nearest = follow_valleys(self.pool[:NEAREST_COUNT], self.few_task, MAX_NEAREST_STEPS)
+            self.pool = select_distinct_fits([*nearest, *self.pool[NEAREST_COUNT:]], POOL_SIZE)
+
+    def _perturb_pool(self, hops: int, rng: np.random.Generator) -> None:
+        """Improve the pool by random perturbations until a fit meets the points."""
+        for _ in range(hops // HOP_GROUP):
+            if not self.pool or self.nearest_error < MET_ERROR:
+                break
+            # Geometric choice: mostly the best, sometimes another to leave its basin.
+            ranks = np.minimum(rng.geometric(HOP_SHARE, HOP_GROUP), len(self.pool)) - 1
+            moved = [perturb_along_valley(self.pool[k], self.few_task, rng) for k in ranks]
+            followed = follow_valleys(moved, self.few_task, MAX_HOP_STEPS)
+            self.pool = select_distinct_fits([*self.pool, *followed], POOL_SIZE)
+
+    def follow_to_the_end(self, count: int, steps: int) -> list[Fit]:
+        """Follow the nearest fits at all points; return distinct ones, the nearest first."""
+        near = [self._move_to_points(fit) for fit in [*self.pool[: count // 2], *self.unperturbed]]
+        return select_distinct_fits(follow_valleys(near, self.task, steps), count)
+
+    def _move_to_points(self, fit: Fit) -> Fit:
+        """Return a fit at few points with the inputs at all points."""
+        if not self.topology.triad:
+            return fit._replace(inputs=self.rotations)
+        return fit._replace(inputs=np.interp(self.points.inputs, self.few.inputs, fit.inputs))
+
+    def meet_exactly(self, fits: Sequence[Fit]) -> list[Fit]:
+        """Meet the points without regard to limits, where sixbars do not meet them under the limits."""
+        ended = descend_softly(fits, self.task, MAX_EXACT_STEPS, EXACT_TOLERANCE, MIN_WEIGHT)
+        return sort_fits(ended)
+
+
+def compute_max_error(one: SixbarCandidate, dense: Real) -> float:
+    """Return a sixbar's maximum error, radians, at inputs and outputs (2, n); infinite if it does not reach one."""
+    evaluated = evaluate_errors(one, *dense)
+    return math.inf if evaluated is None else float(np.abs(evaluated[1]).max())
+
+
+def measure_rms(fit: Fit) -> float:
+    """Return the RMS error of a fit, radians, with the violations of its constraints."""
+    return math.sqrt(2.0 * fit.cost)
+
+
+def select_distinct_fits(fits: Sequence[Fit], count: int) -> list[Fit]:
+    """Return distinct fits of one topology, the nearest first, at most ``count``."""
+    ordered = sort_fits(fits)
+    if not ordered:
+        return []
+    features = np.array([_compute_features(fit) for fit in ordered])
+    return [ordered[k] for k in select_distinct(features, count, MIN_SEPARATION)]
+
+
+def _compute_features(fit: Fit) -> Complex:
+    """Return the joints in a frame in which equal linkages agree."""
+    places, topology = fit.x[0::2] + 1j * fit.x[1::2], fit.topology
+    pivots = places[list(topology.fixed_pivots)]
+    at = (places[list(topology.pin_names)] - pivots[0]) / (pivots[1] - pivots[0])
+    # The second fourbar of a Watt II turns and grows freely about O4.
+    if topology is FUNCTION_SIXBARS["watt_2"]:
+        own = slice(4, 7)
+        at[own] = (at[own] - at[2]) / (at[5] - at[2])
+    return np.asarray(at)

@@ -1,182 +1,271 @@
-"""Starting sixbars, composed of generators that meet some points exactly.
+"""Random sixbars near a function: all nodes but those of the last dyad are drawn, and these follow by linear equations.
 
-Watt II: the function is split into two steps. The first is a random fourbar; the second is a fourbar through five
-points of the remaining function (:func:`~synthesis.kinds.function.fourbar.precision_points.solve_many_exact`).
-Stephenson III: for a random fourbar with coupler point C and a random pivot O6, the dyad C–D–O6 is the least-squares
-solution of the equation
+A chain of dyads ends with a dyad from a moving pin C to the output's pivot O. With C(u) known, the output's arm w at
+output 0 and the length of the other link are the least-squares solution of
 
-    |C − O6|² = 2 Re((C − O6) w̄ e^{−iψ}) + const,        w = |O6 D| e^{iψ₀},
+    |C − O|² = 2 Re((C − O) w̄ e^{−iψ}) + const,        ψ the output,
 
-which is linear in w and const. Stephenson II: all dimensions are random.
+which is linear in w and const; the output's zero follows afterwards, since the whole linkage may be turned.
+
+A Stephenson II is a fourbar on its input link, whose coupler point E carries the output. As this link sees it,
+
+    E(θ) = O2 + g e^{−iφ} + w e^{i(ψ−φ)},        φ the input,
+
+with g = O2 → O4 and w = O4 → E: linear in O2, g and w if the rotation θ of link 3 relative to the input link is a
+random quadratic function of φ. In half of all Stephenson II it turns back.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.arrays import Real
-from synthesis.kinds.function.fourbar.precision_points import solve_many_exact
-from synthesis.kinds.function.fourbar.structural_error import Generators
-from synthesis.kinds.function.fourbar.task import FunctionTask
-from synthesis.kinds.function.sixbar import kernels
+from kinematics.arrays import Complex, Integers, Real
+from kinematics.compiling import njit
+from synthesis.fit.chart import OPTIONS
+from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants
+from synthesis.fit.linkage.descent import Fit
+from synthesis.fit.linkage.topology import Topology
+from synthesis.fit.triad_slant import find_min_slant
 
-LOG_LENGTH_RANGE, WIDE_LOG_LENGTH_RANGE, WIDE_SHARE = 1.3, 2.1, 0.3
-"""Half-width of the sampled logarithms of lengths, in ground lengths; the wider value, and the share of samples that
-use it on request."""
+SIZE_SPREAD = 0.5
+"""Standard deviation of the logarithm of a linkage's size, in cranks."""
 
-DISTANCES_FROM_A, DISTANCES_FROM_MIDDLE = (0.15, 3.0), (0.1, 4.0)
-"""Ranges of sampled distances for a Stephenson III, in sizes of the fourbar: C from A, and O6 from the midpoint of
-O2 O4."""
-
-DISTANCES_FROM_O2, DISTANCES_FROM_B = (0.15, 3.0), (0.15, 3.0)
-"""Ranges of sampled distances for a Stephenson II: C from O2, in sizes of the fourbar, and E from B, in lengths of B D.
+MIN_RATE_LOG, MAX_RATE_LOG = -2.5, 1.2
+"""Range of the logarithm of the rotation of a Stephenson II's link 3 relative to the input, per rotation of the input.
 """
 
-MIN_SWING_RATIO, MAX_SWING = 0.15, math.radians(170.0)
-"""Swing of a Watt II's rocker, the first step: minimum relative to the input's rotation, and maximum in radians."""
+BEND_SPREAD, BEND_SHARE = 0.4, 0.5
+"""Standard deviation of the quadratic coefficient of this rotation, per radian, and share of linkages that have one."""
 
-EXACT_POINT_COUNT = 5
-"""Number of points that the second fourbar of a Watt II meets exactly."""
+MIN_ARM, MAX_ARM = 0.05, 20.0
+"""Range of the ground and the output of a Stephenson II, in standard deviations of its nodes."""
+
+MAX_STRETCH_COSINE = 0.98
+"""Cosine up to which the dyad of a Stephenson II may be stretched, which does not transmit the force."""
+
+MAX_TRIES = 200
+"""Maximum number of linkages begun for each that is requested."""
+
+INNER_NODE_COUNT = 5
+"""Number of nodes of the fourbar in a Stephenson II, with E; O2 and O4 follow."""
+
+REGULARISATION = 1e-13
+"""Share of the trace of normal equations that is added to their diagonal."""
+
+RATIO_EXCESS = 1.2
+"""Factor by which the link ratio of a start may exceed its limit."""
 
 
-class Starts(NamedTuple):
-    """Starting sixbars: rows (k, ROW_SIZE), and the assembly of each."""
+def draw_starts(
+    topology: Topology, inputs: Real, outputs: Real, max_cosine: float, max_ratio: float, count: int, keep: int,
+    seed: int,
+) -> list[Fit]:  # fmt: skip
+    """Draw linkages of a topology near a function, and return the best, at most ``keep``.
 
-    at: Real
-    assemblies: NDArray[np.int64]
-
-
-def sample_starts(
-    kind: int,
-    task: FunctionTask,
-    inputs: Real,
-    outputs: Real,
-    count: int,
-    rng: np.random.Generator,
-    *,
-    wider: bool = False,
-) -> Starts:
-    """Sample starting sixbars of a type, from ``count`` random ones.
-
-    ``inputs``, ``outputs`` (m,): target points in order of the input; ``wider``: whether some first fourbars have a
-    very short or very long ground.
+    Parameters
+    ----------
+    topology : Topology
+    inputs, outputs : float, shape (m,)
+        Rotations, radians; the input is 0 in the reference position.
+    max_cosine, max_ratio : float
+        Maximum cosine of the transmission angle, and maximum link ratio.
+    count, keep : int
+    seed : int
     """
-    at = np.zeros((count, kernels.ROW_SIZE))
-    logs = rng.uniform(-LOG_LENGTH_RANGE, LOG_LENGTH_RANGE, (count, 3))
-    if wider:
-        # A share of samples with very short or long links, which some pairs need.
-        logs[rng.random(count) < WIDE_SHARE] *= WIDE_LOG_LENGTH_RANGE / LOG_LENGTH_RANGE
-    at[:, :3] = np.exp(logs)
-    at[:, kernels.START] = rng.uniform(-math.pi, math.pi, count)
-    for side, column in ((0, kernels.K), (1, kernels.L)):
-        choices = task.scales[side]
-        picked = rng.integers(len(choices), size=count)
-        low, high = np.array(choices)[picked].T
-        at[:, column] = low + (high - low) * rng.random(count)
-    if kind == kernels.STEPHENSON_2:
-        return _sample_stephenson_2(at, rng)
-    signs = rng.choice([-1.0, 1.0], count)
-    # With zero output the structural error is the rocker's angle itself.
-    still = np.concatenate([at[:, :4], np.zeros((count, 1)), at[:, 5:6], np.zeros((count, 1))], axis=1)
-    angles = Generators(False, inputs, outputs).errors(still, signs)
-    # Fourbars that do not reach all inputs are useless as a first step.
-    known = np.isfinite(angles).all(axis=1)
-    at, signs, angles = at[known], signs[known], np.unwrap(angles[known], axis=1)
-    if kind == kernels.WATT_2:
-        swing = np.ptp(angles, axis=1)
-        turned = np.abs(at[:, kernels.K]) * np.ptp(inputs)
-        # The first step must turn enough to drive the second, and must not pass a toggle.
-        kept = (swing > MIN_SWING_RATIO * turned) & (swing < MAX_SWING)
-        return _compose_watt_2(task, at[kept], signs[kept], angles[kept], outputs, rng)
-    return _compose_stephenson_3(at, signs, angles, inputs, outputs, rng)
+    z, thetas = np.zeros((count, 2 * len(topology.nodes))), np.tile(inputs, (count, 1))
+    costs = np.full(count, math.inf)
+    draw = _draw_inverted if topology.triad else _draw_chains
+    drawn = draw(np.random.default_rng(seed), topology.nodes, inputs, outputs, max_cosine, z, thetas, costs)
+    places = z[:drawn, 0::2] + 1j * z[:drawn, 1::2]
+    lengths = np.abs(places[:, topology.pairs[:, 0]] - places[:, topology.pairs[:, 1]])
+    even = np.flatnonzero(lengths.max(axis=1) < RATIO_EXCESS * max_ratio * lengths.min(axis=1))
+    best = even[np.argsort(costs[even], kind="stable")[:keep]]
+    return [Fit(topology, z[k].copy(), thetas[k].copy(), float(costs[k])) for k in best]
 
 
-def _encode_assemblies(first: Real, second: Real) -> NDArray[np.int64]:
-    """Encode assemblies by the signs of both dyads; the dyad A B O4 is open if its sign is +1."""
-    return np.asarray((first > 0.0) + 2 * (second > 0.0), np.int64)
+@njit(**OPTIONS)
+def _draw_chains(
+    rng: np.random.Generator, nodes: Integers, inputs: Real, outputs: Real, cosine: float, z: Real, _thetas: Real,
+    costs: Real,
+) -> int:  # fmt: skip
+    """Draw chains of dyads into the rows of ``z`` with their costs; return their number."""
+    n, m, drawn = len(nodes), len(inputs), 0
+    head, pin, pivot = nodes[: n - 1].copy(), nodes[n - 1, 1], nodes[n - 1, 2]
+    constants, places, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.zeros(n)
+    away, x = np.empty(m, np.complex128), np.zeros(2 * n)
+    for _ in range(MAX_TRIES * len(z)):
+        if drawn == len(z):
+            break
+        size, angle = math.exp(SIZE_SPREAD * rng.normal()), 2.0 * math.pi * rng.random()
+        for k in range(4, 2 * n):
+            x[k] = size * rng.normal()
+        x[2], x[3] = math.cos(angle), math.sin(angle)
+        compute_constants(head, x, constants)
+        closes, cosines[:] = True, 0.0
+        for k in range(m):
+            closes = close_linkage(head, x, constants, inputs[k], places, cosines) and np.abs(cosines).max() <= cosine
+            if not closes:
+                break
+            away[k] = complex(places[pin, 0] - places[pivot, 0], places[pin, 1] - places[pivot, 1])
+        if not closes or not close_linkage(head, x, constants, 0.0, places, cosines):
+            continue
+        there = complex(places[pin, 0] - places[pivot, 0], places[pin, 1] - places[pivot, 1])
+        costs[drawn], arm, turned = _close_last_dyad(away, outputs, there, cosine)
+        if not costs[drawn] < np.inf:
+            continue
+        places[n - 1, 0], places[n - 1, 1] = places[pivot, 0] + arm.real, places[pivot, 1] + arm.imag
+        for k in range(n):
+            place = complex(places[k, 0], places[k, 1]) * turned
+            z[drawn, 2 * k], z[drawn, 2 * k + 1] = place.real, place.imag
+        drawn += 1
+    return drawn
 
 
-def _compose_watt_2(
-    task: FunctionTask, at: Real, signs: Real, angles: Real, outputs: Real, rng: np.random.Generator
-) -> Starts:
-    m, count = len(outputs), len(at)
-    shifts = rng.uniform(-0.8, 0.8, (count, EXACT_POINT_COUNT))
-    spaced = 0.5 - 0.5 * np.cos((2.0 * np.arange(EXACT_POINT_COUNT) + 1.0 + shifts) * math.pi
-                                / (2.0 * EXACT_POINT_COUNT))  # fmt: skip
-    columns = np.clip(np.round(spaced * (m - 1)), 0, m - 1).astype(np.int64)
-    # Rounding to samples may merge two points.
-    distinct = (np.diff(columns, axis=1) > 0).all(axis=1)
-    at, signs, angles, columns = at[distinct], signs[distinct], angles[distinct], columns[distinct]
-    turned = np.take_along_axis(angles, columns, axis=1) - angles[:, :1]
-    wanted = at[:, kernels.L, None] * outputs[columns]
-    found = solve_many_exact(task.closure, turned, wanted, (None, None))
-    own = found[:, 5].astype(np.int64)
-    rows = at[own]
-    rows[:, kernels.ZERO] = found[:, 4]
-    rows[:, 7:10] = found[:, :3]
-    rows[:, 10] = found[:, 3] - angles[own, 0]
-    ones = np.ones((len(rows), 1))
-    second = np.concatenate([found[:, :5], ones, ones], axis=1)
-    there = Generators(False, turned[own], wanted[own]).signs(second)
-    # All signs equal: the second fourbar meets its points in one assembly.
-    same = np.abs(there.sum(axis=1)) > EXACT_POINT_COUNT - 0.5
-    return Starts(rows[same], _encode_assemblies(signs[own[same]], there[same, 0]))
+@njit(**OPTIONS)
+def _regularise(matrix: Real | Complex) -> None:
+    """Make normal equations positive definite, which those of two pairs are not."""
+    trace = matrix[0, 0] + matrix[1, 1] + matrix[2, 2]
+    for i in range(3):
+        matrix[i, i] += REGULARISATION * trace
 
 
-def _compose_stephenson_3(
-    at: Real, signs: Real, angles: Real, inputs: Real, outputs: Real, rng: np.random.Generator
-) -> Starts:
-    size = _measure_sizes(at)
-    at[:, 7:9] = _sample_around(size, DISTANCES_FROM_A, rng)
-    at[:, 9:11] = _sample_around(size, DISTANCES_FROM_MIDDLE, rng)
-    # Around the midpoint of O2 and O4.
-    at[:, 9] += 0.5
-    theta = at[:, kernels.START, None] + at[:, kernels.K, None] * inputs
-    pin = at[:, :1] * np.exp(1j * theta)
-    unit = (1.0 + at[:, 2:3] * np.exp(1j * angles) - pin) / at[:, 1:2]
-    away = pin + (at[:, 7] + 1j * at[:, 8])[:, None] * unit - (at[:, 9] + 1j * at[:, 10])[:, None]
-    seen = away * np.exp(-1j * at[:, kernels.L, None] * outputs)
-    # Solve |away|² = 2 Re(seen w̄) + const by least squares in Re w, Im w and const.
-    table = np.stack([2.0 * seen.real, 2.0 * seen.imag, np.ones_like(seen.real)], axis=2)
-    normal = np.einsum("kmi,kmj->kij", table, table)
-    right = np.einsum("kmi,km->ki", table, np.abs(away) ** 2)
-    # Drop starts whose least squares are numerically singular; their dyads would be arbitrary.
-    sound = np.linalg.cond(normal) < 1e12
-    at, signs, seen, normal, right = at[sound], signs[sound], seen[sound], normal[sound], right[sound]
-    x = np.linalg.solve(normal, right[..., None])[..., 0]
-    w = x[:, 0] + 1j * x[:, 1]
-    square = x[:, 2] + np.abs(w) ** 2
-    at[:, kernels.ZERO] = np.angle(w)
-    at[:, 11], at[:, 12] = np.sqrt(np.maximum(square, 0.0)), np.abs(w)
-    # D is left of C → O6 exactly if it is right of O6 → C, hence the sign below.
-    sides = np.sign((w[:, None] * seen.conj()).imag)
-    # Nine tenths on one side suffice for a start; the descent does the rest.
-    closes = (square > 0.0) & (np.abs(w) > 0.0) & (np.abs(sides.sum(axis=1)) > 0.9 * seen.shape[1])
-    return Starts(at[closes], _encode_assemblies(signs[closes], -sides[closes].sum(axis=1)))
+@njit(**OPTIONS)
+def _close_last_dyad(away: Complex, outputs: Real, there: complex, cosine: float) -> tuple[float, complex, complex]:
+    """Fit the last dyad to a pin's places relative to the output's pivot.
+
+    Returns half the mean square error (infinite on failure), the output's arm for the pin at ``there``, and the
+    rotation of the linkage that brings the output to its zero.
+    """
+    failed = np.inf, 0j, 0j
+    m, row = len(away), np.empty(3)
+    matrix, right = np.zeros((3, 3)), np.zeros(3)
+    for k in range(m):
+        seen = away[k] * complex(math.cos(outputs[k]), -math.sin(outputs[k]))
+        row[0], row[1], row[2] = 2.0 * seen.real, 2.0 * seen.imag, 1.0
+        for i in range(3):
+            right[i] += row[i] * (seen.real * seen.real + seen.imag * seen.imag)
+            for j in range(3):
+                matrix[i, j] += row[i] * row[j]
+    _regularise(matrix)
+    solved = np.linalg.solve(matrix, right)
+    w = complex(solved[0], solved[1])
+    arm, square = abs(w), solved[2] + abs(w) ** 2
+    if not (square > 0.0 and arm > 0.0):
+        return failed
+    sides = 0.0
+    for k in range(m):
+        seen = away[k] * complex(math.cos(outputs[k]), -math.sin(outputs[k]))
+        sides += math.copysign(1.0, (w * seen.conjugate()).imag)
+    side, middle, turns = math.copysign(1.0, sides), 0j, np.empty(m, np.complex128)
+    for k in range(m + 1):
+        pin = away[k] if k < m else there
+        r = abs(pin)
+        along = (arm * arm + r * r - square) / (2.0 * arm * r)
+        # Cosine of the angle between the dyad's links.
+        slant = (arm * arm + square - r * r) / (2.0 * arm * math.sqrt(square))
+        if not (abs(along) < 1.0 and abs(slant) <= cosine):
+            return failed
+        direction = pin / r * complex(along, side * math.sqrt(1.0 - along * along))
+        if k == m:
+            break
+        turns[k] = direction * complex(math.cos(outputs[k]), -math.sin(outputs[k]))
+        middle += turns[k]
+    middle /= abs(middle)
+    cost = 0.0
+    for k in range(m):
+        off = turns[k] * middle.conjugate()
+        cost += 0.5 * math.atan2(off.imag, off.real) ** 2 / m
+    return cost, arm * direction, middle.conjugate()
 
 
-def _sample_stephenson_2(at: Real, rng: np.random.Generator) -> Starts:
-    count = len(at)
-    size = _measure_sizes(at)
-    at[:, kernels.ZERO] = rng.uniform(-math.pi, math.pi, count)
-    at[:, 7:9] = _sample_around(size, DISTANCES_FROM_O2, rng)
-    at[:, 9:11] = size[:, None] * np.exp(rng.uniform(-1.0, 1.0, (count, 2)))
-    at[:, 11:13] = _sample_around(at[:, 9], DISTANCES_FROM_B, rng)
-    at[:, 13] = rng.uniform(-math.pi, math.pi, count)
-    return Starts(at, rng.integers(4, size=count))
+@njit(**OPTIONS)
+def _draw_inverted(
+    rng: np.random.Generator, nodes: Integers, inputs: Real, outputs: Real, cosine: float, z: Real, thetas: Real,
+    costs: Real,
+) -> int:  # fmt: skip
+    """Draw Stephenson II sixbars into the rows of ``z``, with the rotations of link 3 and the costs."""
+    n, m, drawn = len(nodes), len(inputs), 0
+    head, inner = nodes[:INNER_NODE_COUNT].copy(), 2 * INNER_NODE_COUNT
+    constants, places, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.zeros(n)
+    points, x = np.empty(m, np.complex128), np.zeros(2 * n)
+    for _ in range(MAX_TRIES * len(z)):
+        if drawn == len(z):
+            break
+        for k in range(2, inner):
+            x[k] = rng.normal()
+        rate = math.exp(rng.uniform(MIN_RATE_LOG, MAX_RATE_LOG)) * (1.0 if rng.random() < 0.5 else -1.0)
+        bend = BEND_SPREAD * rng.normal() if rng.random() < BEND_SHARE else 0.0
+        theta = inputs * (rate + bend * inputs)
+        compute_constants(head, x, constants)
+        closes, cosines[:] = True, 0.0
+        for k in range(m):
+            closes = close_linkage(head, x, constants, theta[k], places, cosines)
+            closes = closes and np.abs(cosines).max() <= MAX_STRETCH_COSINE
+            if not closes:
+                break
+            points[k] = complex(places[INNER_NODE_COUNT - 1, 0], places[INNER_NODE_COUNT - 1, 1])
+        if not closes:
+            continue
+        pivot, ground, arm = _carry_output(points, inputs, outputs)
+        if not (MIN_ARM < abs(ground) < MAX_ARM and MIN_ARM < abs(arm) < MAX_ARM):
+            continue
+        other, cost = pivot + ground, 0.0
+        x[inner], x[inner + 1], x[inner + 2], x[inner + 3] = pivot.real, pivot.imag, other.real, other.imag
+        for k in range(m):
+            back = complex(math.cos(inputs[k]), -math.sin(inputs[k]))
+            turned = arm * complex(math.cos(outputs[k]), math.sin(outputs[k]))
+            cost += 0.5 * abs(points[k] - pivot - back * (ground + turned)) ** 2 / m
+        costs[drawn] = cost / abs(arm) ** 2
+        if not _transmits(nodes, x, theta, inputs, cosine):
+            continue
+        thetas[drawn] = theta
+        # Turned so that the output is at its zero.
+        turned = arm.conjugate() / abs(arm)
+        for k in range(n):
+            place = complex(x[2 * k], x[2 * k + 1]) * turned
+            z[drawn, 2 * k], z[drawn, 2 * k + 1] = place.real, place.imag
+        drawn += 1
+    return drawn
 
 
-def _measure_sizes(at: Real) -> Real:
-    """Return the geometric means of the links of fourbars, including the ground."""
-    return np.asarray(np.exp(0.25 * np.log(at[:, :3]).sum(axis=1)))
+@njit(**OPTIONS)
+def _transmits(nodes: Integers, x: Real, theta: Real, inputs: Real, cosine: float) -> bool:
+    """Return whether a Stephenson II transmits well at all inputs, on one side of its toggles."""
+    n, hand = len(nodes), 0.0
+    constants, places, cosines = np.empty((n, CONSTANT_COUNT)), np.empty((n, 2)), np.zeros(n)
+    compute_constants(nodes, x, constants)
+    for k in range(len(inputs)):
+        if not close_linkage(nodes, x, constants, theta[k], places, cosines):
+            return False
+        a, b, c, d, e, o2, o4 = (
+            complex(places[0, 0], places[0, 1]), complex(places[1, 0], places[1, 1]),
+            complex(places[2, 0], places[2, 1]), complex(places[3, 0], places[3, 1]),
+            complex(places[4, 0], places[4, 1]), complex(places[5, 0], places[5, 1]),
+            complex(places[6, 0], places[6, 1]),
+        )  # fmt: skip
+        # The input link sees the ground turned back.
+        o4 = o2 + (o4 - o2) * complex(math.cos(inputs[k]), -math.sin(inputs[k]))
+        slant, sine, _ = find_min_slant(e, o4, a, b, c, d)
+        if not (abs(slant) <= cosine and hand * sine >= 0.0):
+            return False
+        hand = sine
+    return True
 
 
-def _sample_around(size: Real, ends: tuple[float, float], rng: np.random.Generator) -> Real:
-    """Sample points in random directions at log-uniform distances, between shares of a size: (n, 2)."""
-    away = size * np.exp(rng.uniform(math.log(ends[0]), math.log(ends[1]), len(size)))
-    angle = rng.uniform(-math.pi, math.pi, len(size))
-    return np.asarray((away * np.array([np.cos(angle), np.sin(angle)])).T)
+@njit(**OPTIONS)
+def _carry_output(points: Complex, inputs: Real, outputs: Real) -> tuple[complex, complex, complex]:
+    """Return O2, g and w of a Stephenson II from places of E as the input link sees them."""
+    matrix, right = np.zeros((3, 3), np.complex128), np.zeros(3, np.complex128)
+    row = np.empty(3, np.complex128)
+    for k in range(len(points)):
+        row[0], row[1] = 1.0, complex(math.cos(inputs[k]), -math.sin(inputs[k]))
+        row[2] = row[1] * complex(math.cos(outputs[k]), math.sin(outputs[k]))
+        for i in range(3):
+            right[i] += row[i].conjugate() * points[k]
+            for j in range(3):
+                matrix[i, j] += row[i].conjugate() * row[j]
+    _regularise(matrix)
+    solved = np.linalg.solve(matrix, right)
+    return solved[0], solved[1], solved[2]

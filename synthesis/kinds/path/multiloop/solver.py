@@ -363,19 +363,22 @@ class _Search:
         if not self.final_task.back or not count or not pool or pool[0].cost <= self.compute_found_cost():
             return []
         rng = np.random.default_rng([self.problem.seed, 1])
-        task = replace(self.final_task, width=FREE_WIDTH, soft_weight=FREE_SOFT_WEIGHT)
+        task = replace(self.final_task, width=FREE_WIDTH)
         # The ends of a stroke's range are unknowns of this form.
         ranged = not self.problem.closed
         free = [
             fit._replace(x=np.append(fit.x, [fit.inputs.min(), fit.inputs.max()])) if ranged else fit
             for fit in [*pool, *self.others]
         ]
-        free = sort_fits(descend_softly(free, task, MAX_HOP_STEPS))
+        free = sort_fits(descend_softly(free, task, MAX_HOP_STEPS, weight=FREE_SOFT_WEIGHT))
         for number in range(count):
             progress(number / count, compose("path-linkages-perturbed", number=number * HOP_COUNT))
             # Fewer fits are pursued towards the end, the best of them more often.
             live = max(MIN_POOL_SIZE, math.ceil(POOL_SIZE * (1.0 - number / count)))
-            free = hop_basins(free[:live], task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings) + free[live:]
+            hopped = hop_basins(
+                free[:live], task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings, FREE_SOFT_WEIGHT
+            )
+            free = hopped + free[live:]
         ends = sort_fits(fit_constrained(free[:MAX_FITTED], task))
         return [fit._replace(x=fit.x[:-2]) if ranged else fit for fit in ends]
 
