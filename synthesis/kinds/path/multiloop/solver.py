@@ -206,7 +206,7 @@ def _solve_exactly_or_fit(
     problem: PathProblem, family: Family, types: Sequence[str], progress: Progress
 ) -> PathResult:  # fmt: skip
     def solve(statement: PathProblem, part: Progress) -> PathResult:
-        return _solve_by_family(statement, family, types, part)
+        return solve_by_family(statement, family, types, part)
 
     if problem.is_fitted:
         return solve(problem, progress)
@@ -402,7 +402,8 @@ class _Search:
         return raised
 
 
-def _solve_by_family(problem: PathProblem, family: Family, types: Sequence[str], progress: Progress) -> PathResult:
+def solve_by_family(problem: PathProblem, family: Family, types: Sequence[str], progress: Progress) -> PathResult:
+    """Solve a problem by linkages of the types of a family whose curves are fitted to the points."""
     search = _Search(problem, family, types)
     pool = search.run(scale_progress(progress, 0.0, ORDERED_PROGRESS))
     free = search.fit_in_any_order(pool, scale_progress(progress, ORDERED_PROGRESS, FREE_PROGRESS))
