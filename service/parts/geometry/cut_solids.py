@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 UPRIGHT = np.eye(3)
+"""Axes of a tool that cuts along the heights."""
 
 FAR_SHARE = 0.1
 """Distance from a polygon's box, as a share of its size, beyond which the box replaces it."""

@@ -1,8 +1,8 @@
 """Closed meshes of regions, by Manifold, with the operations that bodies are made of.
 
-Meshes lie inside their bodies: polygons of outlines are inscribed, those of holes circumscribed. So two meshes have a
-common volume only if their bodies do, and a mesh misses at most a *sag* of its body. Manifold is imported when the
-first mesh is made.
+Meshes of extruded bodies lie inside them: polygons of outlines are inscribed, those of holes circumscribed. Inner walls
+of revolved bodies and twisted walls deviate to either side. No mesh deviates by more than a *sag* from its body.
+Manifold is imported when the first mesh is made.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ MAX_LAYER_TWIST = 0.1
 """Maximum twist of a layer of a twisted prism, radians."""
 
 MIN_TWIST_LAYERS = 4
+"""Minimum number of layers of a twisted prism, so that walls with little twist are curved, too."""
 
 
 def make_section(region: Region, sag: float, *, beyond: bool = False) -> CrossSection:

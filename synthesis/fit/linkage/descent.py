@@ -301,12 +301,15 @@ def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
 
 
 def perturb_along_valley(fit: Fit, task: FitTask, rng: np.random.Generator) -> Fit:
-    """Move a linkage along the directions that change its residuals least."""
+    """Move a linkage along the directions that change its residuals little, without those that change nothing."""
     rows, sizes = evaluate_rows(fit, task), np.repeat(measure_shortest(fit), 2)
     if rows is None:
         return fit
     _, values, along = np.linalg.svd(rows.jacobian[:, : len(sizes)] * sizes, full_matrices=False)
+    # Directions that change nothing, such as another reference position, lead to the same linkage.
     along = along[values > GAUGE_TOLERANCE * values[0]]
+    if not len(along):
+        return fit
     taken = int(rng.integers(1, min(MAX_VALLEY_DIRECTIONS, len(along)) + 1))
     step, moved = along[-taken:].T @ rng.normal(size=taken), fit.x.copy()
     # A random length, but never so short that the same minimum is found again.
@@ -320,8 +323,8 @@ def hop_basins(
 ) -> list[Fit]:  # fmt: skip
     """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first.
 
-    A perturbation after which a linkage does not close is halved up to ``halvings`` times. ``weight`` is that of the
-    constraints.
+    If a copy does not close, others with half the perturbation are tried, up to ``halvings`` times. ``weight`` is that
+    of the constraints.
     """
     pool = sort_fits(fits)
     if not pool:

@@ -23,7 +23,7 @@ from synthesis.kinds.function.statement.mechanism_types import (
 )
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage.problem import Constraints, LinkageProblem
-from synthesis.model.linkage.type_choice import refuse_class, remove_unclassed, select_searched_sixbars
+from synthesis.model.linkage.type_choice import refuse_class, remove_unclassed, select_searched_types
 from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
 from synthesis.model.problem import (
     MAX_MAGNITUDE,
@@ -245,7 +245,7 @@ class FunctionProblem(LinkageProblem):
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbar to search."""
         return remove_unclassed(
-            select_searched_sixbars(self.mechanisms, SIXBARS, list_unsupported(self)), refuse_class(self.constraints)
+            select_searched_types(self.mechanisms, SIXBARS, list_unsupported(self)), refuse_class(self.constraints)
         )
 
     @property

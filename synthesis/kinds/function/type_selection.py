@@ -28,7 +28,7 @@ from synthesis.model.linkage.type_choice import (
     describe_skipped_sixbars,
     describe_unclassed,
     refuse_class,
-    select_searched_sixbars,
+    select_searched_types,
 )
 from synthesis.results.candidate_log import DEFECT_REASONS, LENGTH_REASONS, OUTRANKED_REASON, CandidateLog
 from synthesis.results.ranking import select_best
@@ -87,7 +87,7 @@ def _solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResu
 
 def _describe_dropped(problem: FunctionProblem) -> str:
     return describe_unclassed(
-        select_searched_sixbars(problem.mechanisms, SIXBARS, list_unsupported(problem)),
+        select_searched_types(problem.mechanisms, SIXBARS, list_unsupported(problem)),
         refuse_class(problem.constraints),
     )
 

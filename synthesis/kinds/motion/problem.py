@@ -22,7 +22,7 @@ from synthesis.kinds.motion.statement.mechanism_types import (
 )
 from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_SIXBAR_POSITIONS, Position, Tolerance
 from synthesis.model.linkage.problem import LinkageProblem
-from synthesis.model.linkage.type_choice import remove_unclassed, select_searched_sixbars
+from synthesis.model.linkage.type_choice import remove_unclassed, select_searched_types
 from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
 from synthesis.model.problem import Contradiction, Flag
 
@@ -206,7 +206,7 @@ class MotionProblem(LinkageProblem):
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbar to search."""
         return remove_unclassed(
-            select_searched_sixbars(self.mechanisms, SIXBARS, list_unsupported(self)),
+            select_searched_types(self.mechanisms, SIXBARS, list_unsupported(self)),
             list_unsupported_stephenson_2(self),
         )
 

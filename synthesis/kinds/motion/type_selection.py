@@ -20,7 +20,7 @@ from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS
 from synthesis.kinds.motion.task.ranking import get_rms_error, make_ranking
 from synthesis.model.kind import Progress
 from synthesis.model.linkage.answer import LinkageDesign
-from synthesis.model.linkage.type_choice import describe_skipped_sixbars, describe_unclassed, select_searched_sixbars
+from synthesis.model.linkage.type_choice import describe_skipped_sixbars, describe_unclassed, select_searched_types
 from synthesis.results.simplest_type import (
     ERROR_RATIO,
     describe_alternatives,
@@ -73,7 +73,7 @@ def _solve_sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
 
 def _describe_unclassed(problem: MotionProblem) -> str:
     return describe_unclassed(
-        select_searched_sixbars(problem.mechanisms, SIXBARS, list_unsupported(problem)),
+        select_searched_types(problem.mechanisms, SIXBARS, list_unsupported(problem)),
         list_unsupported_stephenson_2(problem),
     )
 

@@ -37,8 +37,8 @@ class PathMetrics(LinkageMetrics):
         "have between points, a quarter of their distance; length units."
     )
     both_way_rms: Length | None = optional_field(
-        "For fits by sixbars to 24 points or more: root mean square of the points' distances from the curve and of "
-        "the curve's, weighted by its length, from the straight lines through the points; length units."
+        "For fits by sixbars and eightbars to 24 points or more: root mean square of the points' distances from the "
+        "curve and of the curve's, weighted by its length, from the straight lines through the points; length units."
     )
     stance_flatness: Length | None = optional_field(
         "Height, across the stance line, of the band in which P stays from the first point of a stance to its last; "
@@ -84,7 +84,9 @@ class PathDesign(LinkageDesign):
         "For a curve with a free place; the metrics refer to this placement."
     )
     cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
-    point_link: str | None = optional_field("The link of a sixbar that carries P, by its name in the skeleton.")
+    point_link: str | None = optional_field(
+        "The link of a sixbar or eightbar that carries P, by its name in the skeleton."
+    )
     cognate_choice: str = Field(default="", description="Comparison of the design with its cognates.")
 
 

@@ -289,6 +289,7 @@ path-eightbars-passed =
         [one] erfüllt
        *[other] erfüllen
     } alle Bedingungen.
+path-no-linkage-fitted = Keines der gezogenen Getriebe ließ sich innerhalb der Bedingungen annähern.
 path-best-distance = Der mittlere Abstand (RMS) des besten beträgt { $rms_distance } { $unit }.
 path-best-sixbar-exact = Das beste Sechsgelenk ist ein { $type } mit P auf { $link }, das die Punkte trifft.
 path-best-sixbar =

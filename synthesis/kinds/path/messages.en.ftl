@@ -39,7 +39,7 @@ path-coupler-point-for-fourbars-only = limits the place of P on a fourbar's coup
 path-slider-crank-with-output-pivot = a slider-crank has one fixed pivot, the crank's
 path-types-named-twice = mechanisms already names all types; leave this out
 path-types-without-gears = none of the requested mechanisms has gears
-path-not-for-sixbars = is not for sixbars and eightbars; leave it out, or take them out of mechanisms
+path-not-for-sixbars = does not apply to sixbars and eightbars; leave it out, or remove these types from mechanisms
 path-turning-sixbars-only = only sixbars and eightbars whose crank turns through are searched
 path-stance-not-for-stephenson = is not supported for Stephenson II sixbars; name others, or leave it out
 
@@ -268,6 +268,7 @@ path-eightbars-passed =
         [one] satisfies
        *[other] satisfy
     } all constraints.
+path-no-linkage-fitted = No linkage that was drawn could be fitted within the constraints.
 path-best-distance = The best one's rms distance is { $rms_distance } { $unit }.
 path-best-sixbar-exact = The best sixbar is a { $type } with P on { $link }, which meets the points.
 path-best-sixbar = The best sixbar is a { $type } with P on { $link }; its rms distance is { $rms_distance } { $unit }.
@@ -279,7 +280,7 @@ path-best-eightbar = The best eightbar has P on { $link }; its rms distance is {
 path-best-eightbar-both-ways =
     The best eightbar has P on { $link }; its rms distance is { $rms_distance } { $unit }, { $both_way_rms } both ways.
 path-only-other-passed = No { $simple } was found that satisfies all constraints; { $other }s do.
-path-neither-passed = No { $simple } was found that satisfies all constraints; nor was a { $other }.
+path-neither-passed = No { $simple } or { $other } was found that satisfies all constraints.
 
 # Without a full stop: a remark on the listed designs follows, as in "; they are not listed ...".
 path-only-other-sound = No { $simple } that was found is sound; sound { $other }s were found

@@ -26,7 +26,7 @@ from synthesis.kinds.path.statement.stance import Stance, find_stance_errors
 from synthesis.kinds.path.statement.start import StartFourbar, find_start_errors
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage.problem import Constraints, LinkageProblem, Region
-from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR, remove_unclassed, select_searched_sixbars
+from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR, remove_unclassed, select_searched_types
 from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
 from synthesis.model.problem import (
     Contradiction,
@@ -261,7 +261,7 @@ class PathProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars to search; ``auto`` excludes Stephenson II."""
-        named = select_searched_sixbars(self.mechanisms, SIXBAR_TYPES, find_unsupported(self))
+        named = select_searched_types(self.mechanisms, SIXBAR_TYPES, find_unsupported(self))
         if self.mechanisms == "auto":
             return tuple(name for name in named if name != UNCLASSED_SIXBAR)
         return remove_unclassed(named, find_unsupported_unclassed(self))
@@ -269,7 +269,7 @@ class PathProblem(LinkageProblem):
     @property
     def has_eightbars(self) -> bool:
         """Whether eightbars are searched; ``auto`` searches them only if sixbars are far off."""
-        searched: tuple[Literal["eightbar"], ...] = select_searched_sixbars(
+        searched: tuple[Literal["eightbar"], ...] = select_searched_types(
             self.mechanisms, ("eightbar",), find_unsupported(self)
         )
         return bool(searched)

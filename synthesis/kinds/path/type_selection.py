@@ -1,8 +1,8 @@
 """Selection of the linkage type that guides the point: the simplest sound and near one, followed by better ones.
 
 Simpler types are searched first: fourbars, slider-cranks, geared fivebars, all sixbars together, then eightbars. With
-``auto`` eightbars are searched only if the best sixbar is farther off than :data:`MAX_SIXBAR_ERROR`. A linkage that
-satisfies all constraints is the only answer if it transmits force well enough
+``auto`` eightbars are searched only if all simpler linkages are farther off than :data:`MAX_SIMPLER_ERROR`. A linkage
+that satisfies all constraints is the only answer if it transmits force well enough
 (:func:`~synthesis.results.simplest_type.has_good_transmission`) and is near: its error is at most
 :data:`MAX_NEAR_ERROR` of the task's size, or within the given tolerances. Otherwise the next types are searched. They
 are listed next to it if their error is at most :data:`ERROR_RATIO` of its minimum error, or if only they are sound.
@@ -29,7 +29,7 @@ from synthesis.kinds.path.statement.mechanism_types import (
 )
 from synthesis.kinds.path.task.ranking import build_ordering, compute_error, find_min_error, is_exact
 from synthesis.model.kind import Progress, scale_progress
-from synthesis.model.linkage.type_choice import describe_skipped_sixbars, describe_unclassed, select_searched_sixbars
+from synthesis.model.linkage.type_choice import describe_skipped_sixbars, describe_unclassed, select_searched_types
 from synthesis.results.simplest_type import (
     ERROR_RATIO,
     describe_alternatives,
@@ -44,9 +44,9 @@ Solve = Callable[[PathProblem, Progress], PathResult]
 MAX_NEAR_ERROR = 1e-3
 """Error, as a share of the task's size, below which no more complex type is searched."""
 
-MAX_SIXBAR_ERROR = 0.03
-"""Error of the best sixbar, as a share of the task's size, below which ``auto`` searches no eightbars: two more links
-must pay for themselves, and a client can ask for them."""
+MAX_SIMPLER_ERROR = 0.03
+"""Error of the best simpler linkage, as a share of the task's size, below which ``auto`` searches no eightbars: two
+more links must pay for themselves, and a client can ask for them."""
 
 
 def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
@@ -88,7 +88,7 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     if problem.mechanisms == "auto" and not problem.sixbars:
         sentences.append(describe_skipped_sixbars(find_unsupported(problem)))
     elif problem.mechanisms != "auto":
-        named = select_searched_sixbars(problem.mechanisms, MULTILOOP_TYPES, find_unsupported(problem))
+        named = select_searched_types(problem.mechanisms, MULTILOOP_TYPES, find_unsupported(problem))
         sentences.append(describe_unclassed(named, find_unsupported_unclassed(problem)))
     return result.model_copy(update={"summary": join_sentences(sentences)})
 
@@ -102,7 +102,7 @@ def _is_sufficient(problem: PathProblem, design: PathDesign) -> bool:
 def _is_far(problem: PathProblem, result: PathResult) -> bool:
     """Return whether no linkage that satisfies all constraints is near the target."""
     errors = [compute_error(design, problem) for design in select_passing(result.designs)]
-    return min(errors, default=math.inf) > MAX_SIXBAR_ERROR * problem.task_size
+    return min(errors, default=math.inf) > MAX_SIMPLER_ERROR * problem.task_size
 
 
 def combine_results(

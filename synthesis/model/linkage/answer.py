@@ -199,7 +199,7 @@ class MultiloopMechanism(Answer):
 
 
 class EightbarMechanism(MultiloopMechanism):
-    """An eightbar: a fourbar O2 A B O4 and two dyads, each of them on two earlier links or on the ground."""
+    """An eightbar: a fourbar O2 A B O4 and two dyads, each joined to two earlier links; one of these may be ground."""
 
     type: Literal["eightbar"] = "eightbar"
 

@@ -31,14 +31,14 @@ def select_requested_types(requested: Auto | Sequence[str] | None, every: Sequen
     return tuple(name for name in every if requested == "auto" or name in requested)
 
 
-def select_searched_sixbars(
+def select_searched_types(
     requested: Auto | Sequence[str] | None, every: Sequence[Name], unsupported: Iterable[Contradiction]
 ) -> tuple[Name, ...]:
     """Return the sixbars to search: the requested ones; for ``auto`` all of them, or none if a field is unsupported."""
     return () if requested == "auto" and any(True for _ in unsupported) else select_requested_types(requested, every)
 
 
-def find_sixbar_contradictions(
+def find_type_contradictions(
     requested: Auto | Sequence[str] | None, every: Sequence[str], unsupported: Iterable[Contradiction]
 ) -> list[Contradiction]:
     """Return the contradictions of fields that the sixbars of an explicit list do not support."""

@@ -336,7 +336,7 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
         ),
         ([(4.0, 10.0)], [(3.0, 15.0)], 5, [4.0], "no sixbar that was found has half of it."),
         ([], [(3.0, 15.0)], 5, [3.0], "No fourbar was found that satisfies all constraints; sixbars do."),
-        ([], [], 5, [], "No fourbar was found that satisfies all constraints; nor was a sixbar."),
+        ([], [], 5, [], "No fourbar or sixbar was found that satisfies all constraints."),
         ([(4.0, 30.0)], [(1.0, 30.0)], 1, [1.0], "listed in its place."),
         ([(4.0, 30.0)], [(0.0, 30.0)], 1, [0.0], "The error of the best fourbar is 4 mm; sixbars have at most half"),
         ([(0.0, 10.0)], [(0.0, 15.0)], 5, [0.0], "No fourbar that was found is sound, and no sixbar is."),

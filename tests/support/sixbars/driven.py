@@ -16,3 +16,14 @@ def transmits(design: Any, loops: Loops, met: Followed, at: dict[str, str]) -> b
     told = design.metrics.transmission_angles
     seen = loops.transmission(met, at)
     return told.keys() == seen.keys() and all(seen[link] >= angle - CLOSE for link, angle in told.items())
+
+
+def find_dyad_pins(design: Any, loops: Loops) -> dict[str, str]:
+    """The pins of the dyads of a sixbar or eightbar that traces a path, by the links that they drive."""
+    kind = design.mechanism.type
+    if kind != "eightbar":
+        return {"coupler": "B", "link_5": "D" if kind == "stephenson_3" else "E"}
+    # Every dyad of an eightbar counts, also where its links have the form of a triad.
+    loops.triad = []
+    # The second pin of a dyad's first link is that of the dyad.
+    return {link: loops.links[link][1] for link in ("coupler", "link_5", "link_7")}

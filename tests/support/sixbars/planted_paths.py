@@ -24,7 +24,7 @@ from synthesis.fit.linkage.topology import CRANK, FIXED, POINT, Topology, list_c
 from synthesis.model.linkage.sixbars import list_lengths
 from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.oracles.loops import Loops
-from tests.support.sixbars.driven import transmits
+from tests.support.sixbars.driven import find_dyad_pins, transmits
 from tests.support.sixbars.path import both_ways, off, solved
 from tests.support.sixbars.planted_functions import ratio_of
 from tests.support.sixbars.spread import each
@@ -136,14 +136,7 @@ def false_claim(design: Any) -> str:
     curve = drive(mechanism, float(mechanism.reference_input) + turn, order=0).joints["P"][0]
     if not max(np.abs(met.points - curve).max(), abs(met.points[-1] - met.points[0])) < 1e-7 * np.abs(curve).max():
         return "another curve"
-    on = design.mechanism.type
-    if on == "eightbar":
-        # The second pin of a dyad's first link is that of the dyad. Every dyad counts, also where links form a triad.
-        at = {link: loops.links[link][1] for link in ("coupler", "link_5", "link_7")}
-        loops.triad = []
-    else:
-        at = {"coupler": "B", "link_5": "D" if on == "stephenson_3" else "E"}
-    return "" if transmits(design, loops, met, at) else "transmission angle"
+    return "" if transmits(design, loops, met, find_dyad_pins(design, loops)) else "transmission angle"
 
 
 def tried(kind: str, points: Complex, own: float, constraints: dict[str, float]) -> tuple[float, float, float, Any]:

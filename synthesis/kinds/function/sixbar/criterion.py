@@ -27,8 +27,8 @@ CONVERGED_ERROR = 5e-9
 """Maximum error, radians, that counts as zero: 0.3 millionths of a degree. No further improvement is useful."""
 
 MAX_ROUNDS, MAX_LAST_ROUNDS, MAX_SQUARE_ROUNDS = 25, 300, 15
-"""Maximum number of steps: linear programs for each sixbar, and for the best; a third of the number of quadratic ones.
-"""
+"""Maximum numbers of linear programs for each sixbar and for the best two, and a third of that of quadratic programs
+for least squares."""
 
 LIMIT_STEPS = 49
 """Number of equal steps of the input at which the constraints are limits."""

@@ -76,8 +76,8 @@ FUNCTION_EFFORT = Effort(6000, (300, 40), (100, 60), (24, 150), (8, 200), 96)
 """Effort to approximate a function, or to meet so few pairs that many sixbars do."""
 
 MIN_BATCHES, MAX_BATCHES, PROMISING_ERROR = 4, 16, 1e-3
-"""Numbers of batches for pairs: how many are drawn in any case, and at most as long as the RMS error of the best
-sixbar, radians, promises that one meets the pairs."""
+"""Batches for pairs: minimum number before the search gives up, maximum number, and RMS error of the nearest sixbar,
+radians, above which it gives up after the minimum."""
 
 FEW_POINT_COUNT = 15
 """Number of points in the first descents and valleys."""

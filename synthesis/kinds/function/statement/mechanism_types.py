@@ -11,7 +11,7 @@ from kinematics.message import compose
 from synthesis.model.linkage.type_choice import (
     UNCLASSED_SIXBAR,
     Auto,
-    find_sixbar_contradictions,
+    find_type_contradictions,
     find_unsupported_by_sixbars,
     refuse_class,
 )
@@ -47,4 +47,4 @@ def check_types(problem: FunctionProblem) -> list[Contradiction]:
     if ("slider_crank" in stated) != problem.slides or (problem.slides and set(stated) != {"slider_crank"}):
         return [Contradiction("/mechanisms", compose("function-slider-crank-not-alone"))]
     unclassed = refuse_class(problem.constraints) if set(stated) == {UNCLASSED_SIXBAR} else []
-    return [*unclassed, *find_sixbar_contradictions(stated, problem.sixbars, list_unsupported(problem))]
+    return [*unclassed, *find_type_contradictions(stated, problem.sixbars, list_unsupported(problem))]

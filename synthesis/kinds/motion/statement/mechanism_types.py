@@ -14,7 +14,7 @@ from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_
 from synthesis.model.linkage.type_choice import (
     UNCLASSED_SIXBAR,
     Auto,
-    find_sixbar_contradictions,
+    find_type_contradictions,
     find_unsupported_by_sixbars,
     refuse_class,
     select_requested_types,
@@ -71,7 +71,7 @@ def find_motion_sixbar_contradictions(problem: MotionProblem) -> list[Contradict
         listed.append(Contradiction("/chain", detail))
     if not (isinstance(stated, list) and select_requested_types(stated, SIXBARS)):
         return [*listed, *_check_types(problem)]
-    listed += find_sixbar_contradictions(stated, SIXBARS, list_unsupported(problem))
+    listed += find_type_contradictions(stated, SIXBARS, list_unsupported(problem))
     if select_requested_types(stated, SIXBARS) == (UNCLASSED_SIXBAR,):
         listed += list_unsupported_stephenson_2(problem)
     return [*listed, *_check_chain_reach(problem)]

@@ -40,7 +40,7 @@ def build_packer(
     """
     # The constraints that do not depend on the type are those of fits of fourbars.
     plain = pack_curve_setting(problem, centre, size)
-    # Only the box is constrained in fits; obstacles are checked on the driven sixbar.
+    # Only the box is constrained in fits; obstacles are checked on the driven linkage.
     room = None if problem.space is None else problem.space.shrink_box_for_joints(WORKSPACE_MARGIN * size)
     packed: dict[int, Real] = {}
 

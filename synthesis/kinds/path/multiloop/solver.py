@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Real
 from kinematics.message import compose
+from synthesis.fit.linkage.closure import move_reference
 from synthesis.fit.linkage.descent import (
     Fit,
     FitTask,
@@ -35,7 +36,7 @@ from synthesis.fit.linkage.descent import (
     hop_basins,
     sort_fits,
 )
-from synthesis.fit.linkage.residuals import ROOT
+from synthesis.fit.linkage.residuals import ROOT, X, Y
 from synthesis.fit.linkage.topology import Topology, list_forms
 from synthesis.kinds.path.curve.fits import get_thinning
 from synthesis.kinds.path.curve.stance_fit import pack_target_stance
@@ -85,7 +86,7 @@ MAX_FREE_STARTS, MIN_POOL_SIZE = 120, 3
 """Maximum number of fits from which those in any order start; number of fits that are pursued at the end."""
 
 ORDERED_PROGRESS, FREE_PROGRESS = 0.5, 0.8
-"""Progress after fits to the points in order, and after those in any order, which may be left out."""
+"""Progress after fits to the points in order, and after those in any order, which not every family has."""
 
 FREE_SOFT_WEIGHT = 300.0
 """Weight of soft constraints in fits in any order: mean distances are larger numbers than their squares."""
@@ -141,7 +142,7 @@ class Family(NamedTuple):
     method : str
         Name of the search in answers.
     halvings : int
-        Number of times that a perturbation after which a linkage does not close is halved.
+        Number of times that another perturbation of half the size is tried if a linkage does not close.
     free_generation_count : int
         Number of generations of hops that approach the points in any order, if no fit is at them before.
     fitted, driven, passed : str
@@ -188,8 +189,6 @@ EIGHTBARS = Family(
     passed="path-eightbars-passed",
 )
 """Eightbars of all topologies: ten times as many as of sixbars, of which a curve is near to a few."""
-
-Multiloop = SixbarMechanism | EightbarMechanism
 
 
 def solve_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
@@ -247,9 +246,10 @@ class _Search:
             build_point_targets(self.steps, np.ones(SHAPE_POINT_COUNT)), pack_limits, self.full_turn, SOFT_STEP_COUNT
         )
         self.point_task, self.final_task, self.part = self._build_point_tasks()
-        self.others: list[Fit] = []
-        self.topologies = [topology for kind in types for topology in list_forms(kind)]
-        self.kinds = {id(topology): kind for kind in types for topology in list_forms(kind)}
+        self.draw_count = math.ceil(family.draw_count * (1.0 if problem.closed else OPEN_DRAW_SHARE))
+        # Fits that are too far for the pool are starts of fits in any order.
+        self.unpursued: list[Fit] = []
+        self.kinds = {topology: kind for kind in types for topology in list_forms(kind)}
         # Constraints that the fits do not know reject many linkages: keep more of them.
         self.is_judged = bool(
             problem.space is not None or problem.layout is not None or limits.force_limits or problem.stance
@@ -291,44 +291,62 @@ class _Search:
         """Return the best fits to the points, the nearest first, with constraints as penalties."""
         rng = np.random.default_rng(self.problem.seed)
         pool: list[Fit] = []
-        found, enough, rounds = 0, self.compute_found_cost(), self.family.max_rounds
+        rounds = self.family.max_rounds
+        # A problem with constraints that the kernels do not know needs a choice of fits, not only one.
+        required = MIN_FOUND_CONSTRAINED if self.is_judged else MIN_FOUND
         for number in range(rounds):
-            progress(
-                number / rounds,
-                compose(
-                    self.family.fitted,
-                    compared=self.family.draw_count,
-                    fitted=self.family.start_count,
-                    round=number + 1,
-                ),
+            text = compose(
+                self.family.fitted, compared=self.draw_count, fitted=self.family.start_count, round=number + 1
             )
+            progress(number / rounds, text)
             starts = self._draw_starts(rng)
             fits = sort_fits(descend_softly(starts, self.shape_task, MAX_START_STEPS))
             moved = [fit._replace(inputs=self._interpolate_inputs(fit.inputs)) for fit in fits[:MAX_FREE_STARTS]]
-            self.others += moved[POOL_SIZE:]
+            self.unpursued += moved[POOL_SIZE:]
             moved = descend_softly(moved[:POOL_SIZE], self.point_task, MAX_HOP_STEPS)
             pool = sort_fits([*pool, *moved])[:POOL_SIZE]
-            for _ in range(GENERATION_COUNT):
-                found = sum(fit.cost <= enough for fit in pool)
-                # A problem with constraints that the kernels do not know needs a choice of fits, not only one.
-                if found >= (MIN_FOUND_CONSTRAINED if self.is_judged else MIN_FOUND):
+            for generation in range(GENERATION_COUNT):
+                if sum(map(self.is_at_points, pool)) >= required:
                     return pool
+                progress((number + (generation + 1) / (GENERATION_COUNT + 1)) / rounds, text)
                 pool = hop_basins(pool, self.point_task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings)
-            if found and not self.is_judged:
+            if not self.is_judged and any(map(self.is_at_points, pool)):
                 break
         return pool
+
+    def is_at_points(self, fit: Fit) -> bool:
+        """Return whether a fit is at the points, and between them as near to their lines as any smooth curve."""
+        enough = self.compute_found_cost()
+        if not self.point_task.back:
+            return fit.cost <= enough
+        if not fit.cost <= enough + self.compute_chord_cost():
+            return False
+        square, z = 0.0, np.empty(2 * len(fit.topology.nodes))
+        for target, theta in zip(self.point_task.targets, fit.inputs, strict=True):
+            if not move_reference(fit.topology.nodes, fit.x, float(theta), z):
+                return False
+            x, y = z[2 * fit.topology.point : 2 * fit.topology.point + 2]
+            square += target[ROOT] ** 2 * ((x - target[X]) ** 2 + (y - target[Y]) ** 2)
+        return 0.5 * square <= enough
 
     def compute_found_cost(self) -> float:
         """Return half the weighted sum of squares of a fit at the points."""
         return 0.5 * FOUND_ERROR**2 * float(np.sum(self.point_task.targets[:, ROOT] ** 2))
 
+    def compute_chord_cost(self) -> float:
+        """Return the cost of the way back of a smooth curve through the points, which leaves the lines between them."""
+        points = self.point_task.targets[:, X] + 1j * self.point_task.targets[:, Y]
+        # The sag of a parabola over one side is a quarter of a point's distance from the middle of its neighbours; its
+        # mean square is 8/15 of the sag's.
+        sags = 0.25 * np.abs(points[1:-1] - 0.5 * (points[:-2] + points[2:]))
+        return 0.5 * self.point_task.back * 8.0 / 15.0 * float(np.mean(sags**2))
+
     def _draw_starts(self, rng: np.random.Generator) -> list[Fit]:
         """Return the random linkages that are most similar to the target, of all topologies."""
-        share = 1.0 if self.problem.closed else OPEN_DRAW_SHARE
-        count = math.ceil(share * self.family.draw_count / len(self.topologies))
-        keep = math.ceil(self.family.start_count / len(self.topologies))
+        count = math.ceil(self.draw_count / len(self.kinds))
+        keep = math.ceil(self.family.start_count / len(self.kinds))
         found: list[Fit] = []
-        for topology in self.topologies:
+        for topology in self.kinds:
             found += find_similar_linkages(
                 topology, self.steps, self.problem.closed, count, 2 * keep, rng, family=self.shortest,
                 longest=self.problem.longest_link / self.target.size, full_turn=self.full_turn,
@@ -344,8 +362,7 @@ class _Search:
 
     def refine(self, pool: Sequence[Fit]) -> list[Fit]:
         """Fit the best to the points under all constraints; failed ones follow the feasible ones."""
-        count = MAX_FITTED_CONSTRAINED if self.is_judged else MAX_FITTED
-        begun = list(pool[: max(count, self.problem.max_designs)])
+        begun = list(pool[: self.compute_fitted_count()])
         if not self.problem.is_fitted:
             begun = descend_softly(begun, self.point_task, MAX_EXACT_STEPS, EXACT_TOLERANCE)
         ends = fit_constrained(begun, self.final_task)
@@ -353,14 +370,19 @@ class _Search:
         failed = [fit for fit, end in zip(begun, ends, strict=False) if not math.isfinite(end.cost)]
         return [*sort_fits(ends), *failed]
 
+    def compute_fitted_count(self) -> int:
+        """Return the maximum number of fits that are fitted under all constraints."""
+        return max(MAX_FITTED_CONSTRAINED if self.is_judged else MAX_FITTED, self.problem.max_designs)
+
     def fit_in_any_order(self, pool: Sequence[Fit], progress: Progress) -> list[Fit]:
-        """Return fits that approach the points in any order, under all constraints; none if the pool is at the points.
+        """Return fits that approach the points in any order, under all constraints.
 
         They minimize the mean distance, to which corners contribute less than to squares, and a stroke that is retraced
-        may be met on either way.
+        may be met on either way. None are returned if the pool is at the points, or if the points do not define the
+        curve between them.
         """
         count = self.family.free_generation_count
-        if not self.final_task.back or not count or not pool or pool[0].cost <= self.compute_found_cost():
+        if not self.final_task.back or not count or any(map(self.is_at_points, pool)):
             return []
         rng = np.random.default_rng([self.problem.seed, 1])
         task = replace(self.final_task, width=FREE_WIDTH)
@@ -368,18 +390,18 @@ class _Search:
         ranged = not self.problem.closed
         free = [
             fit._replace(x=np.append(fit.x, [fit.inputs.min(), fit.inputs.max()])) if ranged else fit
-            for fit in [*pool, *self.others]
+            for fit in [*pool, *self.unpursued]
         ]
         free = sort_fits(descend_softly(free, task, MAX_HOP_STEPS, weight=FREE_SOFT_WEIGHT))
         for number in range(count):
-            progress(number / count, compose("path-linkages-perturbed", number=number * HOP_COUNT))
+            progress(number / count, compose("path-linkages-perturbed", number=(number + 1) * HOP_COUNT))
             # Fewer fits are pursued towards the end, the best of them more often.
             live = max(MIN_POOL_SIZE, math.ceil(POOL_SIZE * (1.0 - number / count)))
             hopped = hop_basins(
                 free[:live], task, HOP_COUNT, MAX_HOP_STEPS, rng, self.family.halvings, FREE_SOFT_WEIGHT
             )
             free = hopped + free[live:]
-        ends = sort_fits(fit_constrained(free[:MAX_FITTED], task))
+        ends = sort_fits(fit_constrained(free[: self.compute_fitted_count()], task))
         return [fit._replace(x=fit.x[:-2]) if ranged else fit for fit in ends]
 
     def _raise_angles(self, fits: Sequence[Fit]) -> list[Fit]:
@@ -405,19 +427,19 @@ class _Search:
 def solve_by_family(problem: PathProblem, family: Family, types: Sequence[str], progress: Progress) -> PathResult:
     """Solve a problem by linkages of the types of a family whose curves are fitted to the points."""
     search = _Search(problem, family, types)
-    pool = search.run(scale_progress(progress, 0.0, ORDERED_PROGRESS))
+    ordered = ORDERED_PROGRESS if family.free_generation_count else FREE_PROGRESS
+    pool = search.run(scale_progress(progress, 0.0, ordered))
     free = search.fit_in_any_order(pool, scale_progress(progress, ORDERED_PROGRESS, FREE_PROGRESS))
     ends = [*free, *search.refine(pool)]
     made = [
-        build_fitted_linkage(search.kinds[id(fit.topology)], fit, search.target.centre, search.target.size)
-        for fit in ends
+        build_fitted_linkage(search.kinds[fit.topology], fit, search.target.centre, search.target.size) for fit in ends
     ]
     mechanisms = [mechanism for mechanism in made if mechanism is not None]
     return _build_result(problem, family, mechanisms, scale_progress(progress, FREE_PROGRESS, 1.0))
 
 
 def _build_result(
-    problem: PathProblem, family: Family, mechanisms: list[Multiloop], progress: Progress
+    problem: PathProblem, family: Family, mechanisms: Sequence[SixbarMechanism | EightbarMechanism], progress: Progress
 ) -> PathResult:  # fmt: skip
     """Drive the linkages, rank those that pass, and build the result."""
     joints = [[to_complex(joint) for joint in one.skeleton.joints.values()] for one in mechanisms]
@@ -433,7 +455,10 @@ def _build_result(
     progress(1.0, compose("path-verified"))
     summary = join_sentences(
         [
-            compose(family.passed, passed=sifting.accepted, count=sifting.candidates),
+            # Limits that no drawn linkage is near leave nothing to fit.
+            compose(family.passed, passed=sifting.accepted, count=sifting.candidates)
+            if sifting.candidates
+            else compose("path-no-linkage-fitted"),
             sifting.describe_reasons(),
             "" if sifting.passed else compose("path-none-found"),
         ]

@@ -11,7 +11,7 @@ from kinematics.message import compose
 from synthesis.model.linkage.type_choice import (
     UNCLASSED_SIXBAR,
     Auto,
-    find_sixbar_contradictions,
+    find_type_contradictions,
     find_unsupported_by_sixbars,
     refuse_class,
     select_requested_types,
@@ -66,7 +66,7 @@ def find_mechanism_contradictions(problem: PathProblem) -> list[Contradiction]:
         listed.append(Contradiction("/mechanism", compose("path-types-named-twice")))
     if problem.gear_ratio is not None and "geared_fivebar" not in list_simple_types(stated):
         listed.append(Contradiction("/gear_ratio", compose("path-types-without-gears")))
-    listed += find_sixbar_contradictions(stated, MULTILOOP_TYPES, find_unsupported(problem))
+    listed += find_type_contradictions(stated, MULTILOOP_TYPES, find_unsupported(problem))
     return listed + (
         list(find_unsupported_unclassed(problem))
         if select_requested_types(stated, MULTILOOP_TYPES) == (UNCLASSED_SIXBAR,)
