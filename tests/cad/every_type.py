@@ -84,6 +84,10 @@ MADE: dict[Key, Row] = {
         "stephenson_2",
     ),
     ("path", "stephenson_3"): _sixbar(FITTED_PATH, "stephenson_3"),
+    ("path", "eightbar"): _sixbar(
+        {**FITTED_PATH, "layout": {"link_width": 2.0, "pin_diameter": 1.0, "thickness": 1.0, "max_planes": 10}},
+        "eightbar",
+    ),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
     ("quick_return", "crank_shaper"): _quick("crank_shaper", stroke=100.0),
@@ -156,6 +160,7 @@ REFUSED: dict[Key, tuple[Row, str]] = {
 
 NEVER: tuple[Key, ...] = (
     ("motion", "geared_fivebar"),
+    ("motion", "eightbar"),
     ("path", "inverted_slider_crank"),
     ("path", "watt_2"),
     ("function", "watt_1"),
