@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,12 +19,12 @@ VOLUME_SAG_SHARE = 6.5e-5
 than the minimum."""
 
 
-class MeshedBody:
+class MeshedBody(ABC):
     """A body whose mesh, within a sag of it, has its volume, its shadow and its sections."""
 
+    @abstractmethod
     def make_mesh(self, sag: float) -> Manifold:
         """Return the mesh within a sag of the body."""
-        raise NotImplementedError
 
     @cached_property
     def _mesh(self) -> Manifold:

@@ -73,7 +73,7 @@ PAIR_EFFORT = Effort(3000, (150, 20), (75, 100), (16, 400), (8, 300), 32)
 """Effort of a batch to meet pairs."""
 
 FUNCTION_EFFORT = Effort(6000, (300, 40), (100, 60), (24, 150), (8, 200), 96)
-"""Effort to approximate a function, or to meet so few pairs that many sixbars do."""
+"""Effort to approximate a function, or to meet a few pairs exactly, for which many sixbars exist."""
 
 MIN_BATCHES, MAX_BATCHES, PROMISING_ERROR = 4, 16, 1e-3
 """Batches for pairs: minimum number before the search gives up, maximum number, and RMS error of the nearest sixbar,

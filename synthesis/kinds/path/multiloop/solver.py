@@ -443,7 +443,7 @@ def _build_result(
 ) -> PathResult:  # fmt: skip
     """Drive the linkages, rank those that pass, and build the result."""
     joints = [[to_complex(joint) for joint in one.skeleton.joints.values()] for one in mechanisms]
-    # All linkages of a family have as many joints, so that those of different types can be compared.
+    # All linkages of a family have the same number of joints, so their joints can be compared across types.
     chosen = select_distinct(joints, len(joints), DESIGN_DUPLICATE_TOLERANCE * problem.task_size)
     sifting = CandidateLog[PathDesign](problem)
     sifting.verify_candidates(
