@@ -14,10 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Complex, Integers, Real
+from kinematics.arrays import Complex, Real
 from kinematics.message import compose
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, POINT, UNKNOWNS, write_unknowns
 from synthesis.fit.constraints import FAMILY_INDEX, SIGN_INDEX
+from synthesis.kinds.path.points.population import (
+    Population,
+    drop_duplicates,
+    join_populations,
+    make_population,
+    select_best,
+)
 from synthesis.kinds.path.points.starts import (
     CLASS_MARGIN,
     DRAW_SIZE,
@@ -81,9 +88,6 @@ DESCENT_ROUNDS = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
 KICK_ROUNDS, MAX_KICKED, COPY_COUNT, KICK_SIZE = 3, 24, 6, 0.5
 """Perturbation of the best: number of rounds, of linkages, of copies of each, and the standard deviation of the change
 in the logarithms of lengths."""
-
-EQUAL_COST_TOLERANCE = 1e-4
-"""Relative difference below which costs belong to the same minimum."""
 
 FLIP_KICK_SIZE = 0.1
 """Standard deviation of the same change for linkages with a flipped dyad."""
@@ -233,7 +237,7 @@ def find_minima(
         candidate
         for (way, _, _), setting, population in zip(cases, settings, populations, strict=True)
         for candidate in _list_candidates(
-            _drop_duplicates(_select_best(population, len(population.costs)), finalists), setting, way
+            drop_duplicates(select_best(population, len(population.costs)), finalists), setting, way
         )
     ]
     pool.sort(key=lambda candidate: candidate.cost)
@@ -263,7 +267,7 @@ def _search_populations(
     settings: list[Real],
     rng: np.random.Generator,
     progress: Progress,
-) -> list[_Population]:
+) -> list[Population]:
     """Descend from random starts in every case, and perturb the best results."""
     drawn: dict[int, WorkspaceStarts] = {}
     if is_workspace_constrained(problem) and not problem.prescribed:
@@ -279,12 +283,12 @@ def _search_populations(
         populations.append(_descend_population(problem, _orient_rows(thinned.rows, way), setting, len(cases), rng, own))
     for kick in range(KICK_ROUNDS):
         progress(0.4 + 0.2 * kick / KICK_ROUNDS, compose("path-perturbing-fits"))
-        bases = [_drop_duplicates(_select_best(population, 4 * MAX_KICKED), MAX_KICKED) for population in populations]
+        bases = [drop_duplicates(select_best(population, 4 * MAX_KICKED), MAX_KICKED) for population in populations]
         for n, (way, _, sign) in enumerate(cases):
             # Cases alternate in the assembly, so that the neighbour is the same case with the other assembly.
             pair = bases[n], bases[n + 1 if sign > 0.0 else n - 1]
             rows = _orient_rows(thinned.rows, way)
-            populations[n] = _join_populations(
+            populations[n] = join_populations(
                 [populations[n], _perturb_population(problem, pair, rows, settings[n], rng)]
             )
     return populations
@@ -309,12 +313,12 @@ def _perturb_minima(
         # The minima of this case, and those of the other assembly, which may be flipped into it.
         held = _select_population(minima, (way, family, sign)), _select_population(minima, (way, family, -sign))
         population = _perturb_population(problem, held, _orient_rows(thinned.rows, way), settings[n], rng)
-        again += _list_candidates(_drop_duplicates(_select_best(population, MAX_KICKED), MAX_KICKED), settings[n], way)
+        again += _list_candidates(drop_duplicates(select_best(population, MAX_KICKED), MAX_KICKED), settings[n], way)
     again.sort(key=lambda candidate: candidate.cost)
     return again
 
 
-def _list_candidates(population: _Population, setting: Real, way: int) -> list[Candidate]:
+def _list_candidates(population: Population, setting: Real, way: int) -> list[Candidate]:
     return [
         Candidate(x, state, float(cost), Status(status), setting, way)
         for x, state, cost, status in zip(*population, strict=True)
@@ -337,7 +341,7 @@ def descend_from(start: FourbarConfiguration, problem: PathProblem, task: PointT
     wanted = select_families(problem)
     for family in [FOURBAR] if FOURBAR in wanted else wanted:
         setting = restrict_to_zones(pack_setting(problem, task.origin, task.size, sign=sign, family=family))
-        population = _make_population(1, UNKNOWNS[FOURBAR], len(rows), count_setting_margins(setting))
+        population = make_population(1, UNKNOWNS[FOURBAR], len(rows), count_setting_margins(setting))
         x, angles = population.starts[0], population.states[0, : len(rows)]
         x[:2], x[2] = (o2.real, o2.imag), math.atan2(ground.imag, ground.real)
         x[POINT:] = arm.real, arm.imag
@@ -348,7 +352,7 @@ def descend_from(start: FourbarConfiguration, problem: PathProblem, task: PointT
         population.costs[0] = assign_nearest_angles(x, rows, setting, angles)
         for _, steps, tolerance in DESCENT_ROUNDS:
             _descend(population, rows, setting, steps, tolerance)
-        kept = _select_best(population, 1)
+        kept = select_best(population, 1)
         found += [Candidate(*row, setting, 1) for row in zip(*kept, strict=True)]
     held = _solve_all_constrained(found, task, thinned, lambda share: None)
     return sorted(held, key=lambda candidate: candidate.cost)
@@ -368,15 +372,15 @@ def _solve_all_constrained(
     return [candidate for candidate in minima if candidate is not None]
 
 
-def _select_population(minima: list[Candidate], case: Case) -> _Population:
+def _select_population(minima: list[Candidate], case: Case) -> Population:
     """Return the best distinct candidates of a case: the crank's direction, the family and the assembly."""
     way, family, sign = case
     own = [c for c in minima if c.way == way and c.setting[FAMILY_INDEX] == family and c.setting[SIGN_INDEX] == sign]
     own.sort(key=lambda candidate: candidate.cost)
     if not own:
-        return _make_population(0, UNKNOWNS[FOURBAR], 0, 0)
-    population = _Population(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
-    return _drop_duplicates(population, MAX_KICKED)
+        return make_population(0, UNKNOWNS[FOURBAR], 0, 0)
+    population = Population(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
+    return drop_duplicates(population, MAX_KICKED)
 
 
 def _reduce_points(task: PointTask) -> PointTask:
@@ -401,7 +405,7 @@ def _descend_population(
     cases: int,
     rng: np.random.Generator,
     drawn: WorkspaceStarts | None = None,
-) -> _Population:
+) -> Population:
     """Generate the population of one class and assembly, and descend from it.
 
     The starts are random ones and, if ``drawn`` is given, those drawn in a workspace.
@@ -412,7 +416,7 @@ def _descend_population(
     phased = problem.prescribed and problem.crank_phase == "free"
     unknowns = UNKNOWNS[FOURBAR] + phased
     draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAW_SIZE - 4))], axis=1)
-    population = _make_population(count, unknowns, n, count_setting_margins(setting))
+    population = make_population(count, unknowns, n, count_setting_margins(setting))
     if problem.prescribed:
         make_timed_starts(draws, rows, setting, unknowns, population.starts, population.costs)
         count = math.ceil(TIMED_DESCENT_SHARE * count)
@@ -429,26 +433,26 @@ def _descend_population(
         # The first n state entries of a start are its crank angles.
         population.states[:, :n] = runs
         if drawn is not None:
-            population = _join_populations([population, _select_workspace_starts(drawn, n, setting)])
+            population = join_populations([population, _select_workspace_starts(drawn, n, setting)])
     for share, steps, tolerance in DESCENT_ROUNDS:
         # Successive halving: most starts are hopeless after a few steps.
-        population = _select_best(population, max(math.ceil(share * count), 1))
+        population = select_best(population, max(math.ceil(share * count), 1))
         _descend(population, rows, setting, steps, tolerance)
     return population
 
 
-def _select_workspace_starts(drawn: WorkspaceStarts, points: int, setting: Real) -> _Population:
+def _select_workspace_starts(drawn: WorkspaceStarts, points: int, setting: Real) -> Population:
     """Return the starts of one assembly that were drawn in a workspace."""
     own = drawn.sign == setting[SIGN_INDEX]
-    population = _make_population(int(own.sum()), drawn.x.shape[1], points, count_setting_margins(setting))
+    population = make_population(int(own.sum()), drawn.x.shape[1], points, count_setting_margins(setting))
     population.starts[:] = drawn.x[own]
     population.states[:, :points] = drawn.theta[own] - drawn.x[own, 2, None]
     return population
 
 
 def _perturb_population(
-    problem: PathProblem, bases: tuple[_Population, _Population], rows: Real, setting: Real, rng: np.random.Generator
-) -> _Population:
+    problem: PathProblem, bases: tuple[Population, Population], rows: Real, setting: Real, rng: np.random.Generator
+) -> Population:
     """Descend from perturbed copies of the best members of a case.
 
     Flipped copies of the best members of the same case with the other assembly are added.
@@ -465,7 +469,7 @@ def _perturb_population(
         if not len(base.costs) or (problem.prescribed and flip != FLIP_NONE):
             continue
         size = len(base.costs) * copies
-        part = _make_population(size, base.starts.shape[1], n, count_setting_margins(setting))
+        part = make_population(size, base.starts.shape[1], n, count_setting_margins(setting))
         runs = np.ascontiguousarray(base.states[:, :n])
         part.states[:, :n] = runs[np.arange(size) % len(runs)]
         reach = (KICK_SIZE if flip == FLIP_NONE else FLIP_KICK_SIZE) * np.exp(KICK_SPREAD * rng.normal(size=(size, 1)))
@@ -473,53 +477,15 @@ def _perturb_population(
         make_perturbed_starts(base.starts, part.states, its_sign, flip, draws, rows, setting, part.starts, part.costs)
         parts.append(part)
     near = (
-        _join_populations(parts) if parts else _make_population(0, UNKNOWNS[FOURBAR], n, count_setting_margins(setting))
+        join_populations(parts) if parts else make_population(0, UNKNOWNS[FOURBAR], n, count_setting_margins(setting))
     )
     for share, steps, tolerance in KICK_DESCENT_ROUNDS:
-        near = _select_best(near, math.ceil(share * len(near.costs)))
+        near = select_best(near, math.ceil(share * len(near.costs)))
         _descend(near, rows, setting, steps, tolerance)
     return near
 
 
-class _Population(NamedTuple):
-    """Starts that descend together.
-
-    Unknowns have shape (k, unknowns), states (k, 3 points + limits), costs and the status of the last descent (k,).
-    """
-
-    starts: Real
-    states: Real
-    costs: Real
-    statuses: Integers
-
-
-def _make_population(count: int, unknowns: int, points: int, limits: int) -> _Population:
-    return _Population(
-        np.zeros((count, unknowns)),
-        np.zeros((count, 3 * points + limits)),
-        np.full(count, np.inf),
-        np.full(count, Status.STEP_LIMIT, np.int64),
-    )
-
-
-def _join_populations(populations: list[_Population]) -> _Population:
-    return _Population(*(np.concatenate(parts) for parts in zip(*populations, strict=True)))
-
-
-def _select_best(population: _Population, count: int) -> _Population:
-    """Return copies of the best members with finite costs."""
-    kept = np.argsort(population.costs, kind="stable")[:count]
-    kept = kept[np.isfinite(population.costs[kept])]
-    return _Population._make(column[kept] for column in population)
-
-
-def _drop_duplicates(population: _Population, count: int) -> _Population:
-    """Return the best members, best first, without those of equal cost, which are at the same minimum."""
-    kept = np.flatnonzero(np.diff(population.costs, prepend=-1.0) > EQUAL_COST_TOLERANCE * population.costs)[:count]
-    return _Population._make(column[kept] for column in population)
-
-
-def _descend(population: _Population, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
+def _descend(population: Population, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
     if not len(population.costs):
         return
     limits = count_setting_margins(setting)
