@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
 from tests.support.synthesis.balanced_linkages import bodies, crank_rocker, pair
 
 Statement = dict[str, Any]
@@ -153,3 +154,10 @@ def both_open(rng: Rng) -> Statement:
         place = complex(*end.pop("point"))
         end["within"] = around(rng, place + 10.0 * cmath.rect(1.0, rng.uniform(-math.pi, math.pi)), 20.0)
     return stated
+
+
+def problem_of(statement: Statement) -> SpringBalancingProblem:
+    """The problem of a statement that contradicts nothing."""
+    problem = SpringBalancingProblem.model_validate(statement)
+    problem.require_consistent()
+    return problem
