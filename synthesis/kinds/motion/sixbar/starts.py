@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from kinematics.arrays import Complex, Real
+from kinematics.arrays import Real
 from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants
@@ -51,7 +51,7 @@ def draw_starts(topology: Topology, task: FitTask, count: int, rng: np.random.Ge
 
 @njit(**OPTIONS)
 def _draw_linkage(
-    rng: np.random.Generator, setting: Real, centre: Complex, first: Complex, heading: float, source: int,
+    rng: np.random.Generator, setting: Real, centre: complex, first: complex, heading: float, source: int,
     pointer: int, z: Real, inputs: Real,
 ) -> bool:  # fmt: skip
     """Draw a linkage in the first pose and a rotation of its input; return whether it closes at some inputs."""
