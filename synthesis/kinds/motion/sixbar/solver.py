@@ -88,8 +88,9 @@ SEARCH_STEP_COUNT, STEP_COUNT, FINAL_STEP_COUNT = 16, 24, 72
 """Numbers of steps of the input at which constraints are penalties in the search and in improvements, and at which they
 are enforced in fits and linkages are evaluated."""
 
-COARSE_TOLERANCE, FINE_TOLERANCE = 1e-2, 1e-10
-"""Tolerances of descents in the search, where a slow one is left to basin hopping, and of those to the end."""
+COARSE_TOLERANCE, FINE_TOLERANCE, FINAL_STEPS = 1e-2, 1e-10, 300
+"""Tolerances of descents in the search, where a slow one is left to basin hopping, and of those to the end; and maximum
+number of steps of the latter."""
 
 MET_COST = 1e-22
 """Half the sum of squares below which a linkage meets all positions and constraints, up to rounding."""
@@ -109,7 +110,7 @@ IMPROVEMENT_COUNT, IMPROVEMENT_HOP, IMPROVEMENT_DECAY = 14, 0.12, 0.8
 """Improvement of linkages that meet the positions: number of hops, size of the first, and its factor after a failure.
 """
 
-FIT_ROUNDS, STALE_GENERATIONS, MIN_COST_RATIO = 24, 16, 0.97
+FIT_ROUNDS, STALE_GENERATIONS, MIN_COST_RATIO = 14, 32, 0.97
 """Fits: maximum number of rounds; a pool has converged if this many generations do not lower its least cost below this
 share."""
 
@@ -324,9 +325,12 @@ class SixbarSearch:
         return sort_fits([*found, *self.converge_fits(pool)])
 
     def converge_fits(self, pool: Sequence[Fit]) -> list[Fit]:
-        """Return the fits of a pool under enforced constraints, on their exact positions."""
+        """Return the fits of a pool at their least squares under enforced constraints, on their exact positions."""
         task = self.build_task(self.limits.bare_aims, FINAL_STEP_COUNT)
-        ends = sort_fits(fit_constrained(pool, task))
+        fits = descend_softly(pool, task, FINAL_STEPS, FINE_TOLERANCE, SOFT_WEIGHT)
+        # Positions that can be met at the limits are met by now; the others keep a small violation.
+        met, missed = _take_met(fits)
+        ends = [*met, *sort_fits(fit_constrained(missed, task))]
         return self._project_on_exact(ends, task) if self.exact.any() else ends
 
     def _project_on_exact(self, fits: Sequence[Fit], task: FitTask) -> list[Fit]:

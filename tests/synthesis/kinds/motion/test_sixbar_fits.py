@@ -12,7 +12,7 @@ from synthesis.fit.linkage.closure import trace_linkage
 from synthesis.fit.linkage.descent import Fit, descend_softly
 from synthesis.fit.linkage.topology import list_forms
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.sixbar.solver import FINAL_STEP_COUNT, SixbarSearch
+from synthesis.kinds.motion.sixbar.solver import FINAL_STEP_COUNT, FINE_TOLERANCE, SixbarSearch
 from synthesis.registry import parse_problem
 from tests.support.sixbars.motion import SIXBARS, Task, anyhow, false_claim, sound, stated, within_a_box
 
@@ -57,9 +57,9 @@ def test_a_fit_goes_on_to_the_limits_where_positions_are_met_there(kind, number)
     # Headings count from the first position.
     turn = np.exp(-1j * math.radians(positions[0]["angle"]))
     joints[topology.heading] = joints[topology.point] + turn * (joints[topology.heading] - joints[topology.point])
-    x = np.concatenate([joints.view(float), np.log(np.diff(inputs))]) + 1e-4
+    x = np.concatenate([joints.view(float), np.log(np.diff(inputs))]) + 1e-5
     start = Fit(topology, x, inputs)
-    (kept_off,) = descend_softly([start], search.build_task(search.limits.aims, FINAL_STEP_COUNT), 300, 1e-10)
+    (kept_off,) = descend_softly([start], search.build_task(search.limits.aims, FINAL_STEP_COUNT), 300, FINE_TOLERANCE)
     assert kept_off.cost > 1e-13
     (met,) = search.converge_fits([start])
     assert met.cost < 1e-18
