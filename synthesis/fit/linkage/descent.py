@@ -26,14 +26,16 @@ from synthesis.fit.linkage.residuals import (
     PLACE,
     ROOT,
     SECOND_NODE,
+    SECOND_TOLERANCE,
     SLOT,
     TARGET_SIZE,
+    TOLERANCE,
     X,
     Y,
     compute_linkage_rows,
     count_rows,
 )
-from synthesis.fit.linkage.setting import BACK, FULL_TURN, STEPS, WIDTH
+from synthesis.fit.linkage.setting import BACK, FULL_TURN, ORDER, STEPS, WIDTH
 from synthesis.fit.linkage.topology import POINT, Topology
 from synthesis.numerics.augmented_lagrangian import descend_constrained
 from synthesis.numerics.geodesic import follow_valley
@@ -57,6 +59,9 @@ directions that change the residuals least."""
 
 GAUGE_TOLERANCE = 1e-12
 """Relative singular value below which a direction only places the linkage and changes nothing else."""
+
+SETTLED_INPUT, MAX_SETTLING_CALLS = 1e-12, 20
+"""Last step of a settled input, radians, and maximum number of evaluations that settle it."""
 
 PORTION_SIZE = 4
 """Number of descents that a thread takes at a time."""
@@ -89,7 +94,7 @@ class FitTask:
 
     Attributes
     ----------
-    targets : float, shape (targets, 8)
+    targets : float, shape (targets, 10)
         Targets of the traced point (PLACE) and the output (DIRECTION, ARM), each of any node: a topology has its
         own. See :func:`build_point_targets` and :func:`build_function_targets`.
     pack_limits : callable
@@ -98,6 +103,9 @@ class FitTask:
         Whether the input turns through.
     steps : int
         Number of steps of the input at which the motion is constrained.
+    ordered : bool
+        Whether the inputs of the slots must follow one another in one direction. The logarithms of their steps are the
+        last unknowns then, so that no step reverses.
     back, width : float
         Weight of the way back, and δ of the robust form; see :mod:`synthesis.fit.linkage.residuals`.
     rows : compiled function
@@ -112,6 +120,7 @@ class FitTask:
     pack_limits: Callable[[Topology], Real]
     full_turn: bool = True
     steps: int = 36
+    ordered: bool = False
     back: float = 0.0
     width: float = 0.0
     rows: Rows = compute_linkage_rows
@@ -123,12 +132,12 @@ class FitTask:
         targets, setting = self.targets.copy(), self.pack_limits(topology).copy()
         for kind, ends in (
             (PLACE, (topology.point, 0)),
-            (DIRECTION, topology.get_direction("output")),
+            (DIRECTION, topology.measured_direction),
             (ARM, (topology.triad[0] if topology.triad else 0, topology.fixed_pivots[0])),
         ):
             targets[targets[:, KIND] == kind, FIRST_NODE : SECOND_NODE + 1] = ends
         setting[FULL_TURN], setting[STEPS], setting[BACK] = self.full_turn, self.steps, self.back
-        setting[WIDTH] = self.width
+        setting[WIDTH], setting[ORDER] = self.width, self.ordered
         return targets, setting
 
 
@@ -146,6 +155,30 @@ def build_function_targets(inputs: Real, outputs: Real, roots: Real, length_root
         targets[:, KIND], targets[:, X] = DIRECTION, outputs
     else:
         targets[:, KIND], targets[:, X], targets[:, Y], targets[:, FREE] = ARM, inputs, outputs, length_root
+    return targets
+
+
+def build_pose_targets(points: Complex, angles: Real, tolerances: Real, roots: Real) -> Real:
+    """Return rows of targets for the traced point and the heading of its link, two for each pose in turn.
+
+    Parameters
+    ----------
+    points, angles : complex and float, shape (poses,)
+    tolerances : float, shape (poses, 3)
+        Those of x, y and angle.
+    roots : float, shape (poses,)
+        Roots of the weights.
+
+    The reference position is the first pose; the inputs of all others are free.
+    """
+    n = len(points)
+    targets = np.zeros((2 * n, TARGET_SIZE))
+    places, headings = targets[::2], targets[1::2]
+    places[:, KIND], places[:, X], places[:, Y] = PLACE, points.real, points.imag
+    places[:, TOLERANCE], places[:, SECOND_TOLERANCE] = tolerances[:, 0], tolerances[:, 1]
+    headings[:, KIND], headings[:, X], headings[:, TOLERANCE] = DIRECTION, angles, tolerances[:, 2]
+    targets[:, ROOT], targets[:, SLOT] = np.repeat(roots, 2), np.repeat(np.arange(n), 2)
+    targets[2:, FREE] = 1.0
     return targets
 
 
@@ -232,6 +265,19 @@ def evaluate_rows(fit: Fit, task: FitTask) -> FitRows | None:
     )
 
 
+def settle_inputs(fit: Fit, task: FitTask) -> Fit:
+    """Return a fit with the nearest inputs of its free slots, and its cost without constraints."""
+    for _ in range(MAX_SETTLING_CALLS):
+        rows = evaluate_rows(fit, task)
+        if rows is None:
+            return fit._replace(cost=math.inf)
+        change = float(np.abs(rows.inputs - fit.inputs).max())
+        fit = fit._replace(inputs=rows.inputs, cost=0.5 * float(rows.residuals @ rows.residuals))
+        if change < SETTLED_INPUT:
+            break
+    return fit
+
+
 def fit_constrained(
     fits: Sequence[Fit], task: FitTask, rounds: int = MAX_ROUNDS, steps: int = MAX_CONSTRAINED_STEPS
 ) -> list[Fit]:
@@ -300,6 +346,11 @@ def perturb_fit(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
     return fit._replace(x=moved, cost=math.inf)
 
 
+def perturb_evenly(fit: Fit, size: float, rng: np.random.Generator) -> Fit:
+    """Change all unknowns of a linkage at random by the same ``size``, in units of the task."""
+    return fit._replace(x=fit.x + size * rng.normal(size=len(fit.x)), cost=math.inf)
+
+
 def perturb_along_valley(fit: Fit, task: FitTask, rng: np.random.Generator) -> Fit:
     """Move a linkage along the directions that change its residuals little, without those that change nothing."""
     rows, sizes = evaluate_rows(fit, task), np.repeat(measure_shortest(fit), 2)
@@ -319,25 +370,30 @@ def perturb_along_valley(fit: Fit, task: FitTask, rng: np.random.Generator) -> F
 
 def hop_basins(
     fits: Sequence[Fit], task: FitTask, hops: int, steps: int, rng: np.random.Generator, halvings: int = 0,
-    weight: float = SOFT_WEIGHT,
+    weight: float = SOFT_WEIGHT, *, tolerance: float = SOFT_TOLERANCE, goal: float = 0.0, rank: float = HOP_RANK,
+    size: float = HOP_SIZE, perturb: Callable[[Fit, float, np.random.Generator], Fit] = perturb_fit,
 ) -> list[Fit]:  # fmt: skip
     """Perturb fits ``hops`` times, chosen by rank, and descend from each copy; return the pool, the nearest first.
 
     If a copy does not close, others with half the perturbation are tried, up to ``halvings`` times. ``weight`` is that
-    of the constraints.
+    of the constraints. Copies whose cost falls below ``goal`` join the pool instead of replacing their parent. ``rank``
+    is the mean rank of the parents, and ``size`` the median size of a perturbation.
     """
     pool = sort_fits(fits)
     if not pool:
         return pool
-    parents = np.minimum(rng.exponential(HOP_RANK, hops).astype(np.int64), len(pool) - 1)
-    sizes = HOP_SIZE * np.exp(HOP_SPREAD * rng.normal(size=hops))
+    parents = np.minimum(rng.exponential(rank, hops).astype(np.int64), len(pool) - 1)
+    sizes = size * np.exp(HOP_SPREAD * rng.normal(size=hops))
     children, waiting = dict[int, Fit](), list(range(hops))
     for _ in range(halvings + 1):
-        copies = [perturb_fit(pool[parents[k]], float(sizes[k]), rng) for k in waiting]
-        children |= zip(waiting, descend_softly(copies, task, steps, weight=weight), strict=True)
+        copies = [perturb(pool[parents[k]], float(sizes[k]), rng) for k in waiting]
+        children |= zip(waiting, descend_softly(copies, task, steps, tolerance, weight), strict=True)
         waiting = [k for k in waiting if not math.isfinite(children[k].cost)]
         sizes *= 0.5
+    ended = []
     for k, parent in enumerate(parents):
-        if children[k].cost < (1.0 - MIN_GAIN_SHARE) * pool[parent].cost:
+        if children[k].cost < goal:
+            ended.append(children[k])
+        elif children[k].cost < (1.0 - MIN_GAIN_SHARE) * pool[parent].cost:
             pool[parent] = children[k]
-    return sort_fits(pool)
+    return sort_fits([*pool, *ended])

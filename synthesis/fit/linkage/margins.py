@@ -7,9 +7,12 @@ constraint          g, h margin
 =================== ==== ==========================================================================
 link lengths        g    ln(l / minimum), ln(maximum / l) for each pair of pins of a link
 link ratio          g    ln(ratio · lᵢ / lₖ) for each ordered pair of these
+reach               g    ln(reach / l) for the distance of the traced point from each pin of its link
 Grashof class       g    ln(l / l_s) for the links of the first fourbar; l_s must be the shortest
+Grashof condition   g    1 − 2(l_s + l)/(sum of the four) for the same links, or the opposite for the extreme ones
 pivot regions       g    distance from each side of a box
 moving pivots       g    the same at the first point, with its input
+rotation            g    a turn − |θ| of the last of ordered inputs
 given pivots        h    distance along each axis
 transmission angle  g    cos γ_min ∓ cos γ at each step of the input, for each dyad or the triad
 workspace           g    at each step, distance from each side of a box of the joint nearest to it
@@ -29,19 +32,23 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 from synthesis.fit.linkage.closure import differentiate_cosine
 from synthesis.fit.linkage.setting import (
+    ARM_COUNT,
     COSINE,
     FAMILY,
     FIRST_FOURBAR,
     GIVEN_PIVOTS,
+    GRASHOF,
     INPUT_BOX,
     LINKS,
     MOVING_BOX,
+    ORDER,
     PAIR_COUNT,
     PIN_COUNT,
     PIVOT_BOX,
     PIVOT_COUNT,
     POINT_NODE,
     RATIO,
+    REACH,
     STEPS,
     TRIAD,
     WORKSPACE_BOX,
@@ -53,7 +60,10 @@ EQUATION_COUNT = 4
 """Number of margins, the last ones, that must be zero: coordinates of given pivots."""
 
 FAMILY_MARGIN_COUNT = 4
-"""Number of margins of the Grashof class; that of the shortest link itself stays infinite."""
+"""Number of margins of the Grashof class, and of the Grashof condition; those of the shortest link stay infinite."""
+
+MAX_ROTATION = 2.0 * math.pi - 1e-3
+"""Greatest rotation of ordered inputs, radians."""
 
 BOX_SIDE_COUNT = 4
 """Number of sides of a box: minimum x, maximum x, minimum y, maximum y."""
@@ -64,7 +74,7 @@ def count_static_margins(setting: Real) -> int:
     """Return the number of margins that do not depend on the motion, without the equations."""
     pairs = int(setting[PAIR_COUNT])
     boxes = int(setting[PIVOT_COUNT]) + int(setting[PIN_COUNT])
-    return pairs * (pairs + 1) + FAMILY_MARGIN_COUNT + BOX_SIDE_COUNT * boxes
+    return pairs * (pairs + 1) + 2 * FAMILY_MARGIN_COUNT + BOX_SIDE_COUNT * boxes + int(setting[ARM_COUNT])
 
 
 @njit(**OPTIONS)
@@ -77,9 +87,15 @@ def count_step_margins(transmitting: Integers, setting: Real) -> int:
 @njit(**OPTIONS)
 def count_margins(setting: Real) -> int:
     """Return the number of all margins of a setting."""
-    _, transmitting, _, _, _ = unpack_table(setting)
+    transmitting = unpack_table(setting)[1]
     total: int = count_static_margins(setting) + int(setting[STEPS]) * count_step_margins(transmitting, setting)
-    return total + EQUATION_COUNT
+    return total + count_order_margins(setting) + EQUATION_COUNT
+
+
+@njit(**OPTIONS)
+def count_order_margins(setting: Real) -> int:
+    """Return the number of margins of ordered inputs."""
+    return 1 if setting[ORDER] != 0.0 else 0
 
 
 @njit(**OPTIONS)
@@ -126,7 +142,35 @@ def _write_length_margins(
                 gradients[number + k] = 0.0
                 _add_length(pairs, slopes, link, 1.0, gradients[number + k])
                 _add_length(pairs, slopes, least, -1.0, gradients[number + k])
+    number += FAMILY_MARGIN_COUNT
+    if setting[GRASHOF] != 0.0:
+        _write_grashof_margins(pairs, logs, slopes, setting, number, values, gradients)
     return number + FAMILY_MARGIN_COUNT
+
+
+@njit(**OPTIONS)
+def _write_grashof_margins(
+    pairs: Integers, logs: Real, slopes: Real, setting: Real, number: int, values: Real, gradients: Real
+) -> None:
+    """Write the margins of the Grashof condition, or that of a fourbar without it, from ``number`` on."""
+    links, lengths = np.empty(FAMILY_MARGIN_COUNT, np.int64), np.empty(FAMILY_MARGIN_COUNT)
+    for k in range(FAMILY_MARGIN_COUNT):
+        links[k] = int(setting[FIRST_FOURBAR][k])
+        lengths[k] = math.exp(logs[links[k]])
+    total = lengths.sum()
+    keeps = setting[GRASHOF] > 0.0
+    least = int(setting[FAMILY]) if keeps else int(lengths.argmin())
+    for k in range(FAMILY_MARGIN_COUNT):
+        # Only the longest link breaks the condition; all links must keep it, because any may be the longest.
+        if k == least or not (keeps or k == int(lengths.argmax())):
+            continue
+        sign, share = 1.0 if keeps else -1.0, 2.0 * (lengths[least] + lengths[k]) / total
+        values[number + k] = sign * (1.0 - share)
+        gradients[number + k] = 0.0
+        for j in range(FAMILY_MARGIN_COUNT):
+            own = 2.0 if j in (least, k) else 0.0
+            factor = -sign * (own - share) * lengths[j] / total
+            _add_length(pairs, slopes, links[j], factor, gradients[number + k])
 
 
 @njit(**OPTIONS)
@@ -140,8 +184,8 @@ def _add_length(pairs: Integers, slopes: Real, k: int, factor: float, row: Real)
 
 @njit(**OPTIONS)
 def write_static_margins(
-    z: Real, pairs: Integers, pivots: Integers, pins: Integers, first_places: Real, first_slopes: Real, setting: Real,
-    multipliers: Real, values: Real, gradients: Real,
+    z: Real, pairs: Integers, pivots: Integers, pins: Integers, arms: Integers, first_places: Real, first_slopes: Real,
+    setting: Real, multipliers: Real, values: Real, gradients: Real,
 ) -> int:  # fmt: skip
     """Write all margins that do not depend on the motion, and return the number of the next one.
 
@@ -149,7 +193,7 @@ def write_static_margins(
     ----------
     z : float, shape (u,)
         Unknowns.
-    pairs, pivots, pins
+    pairs, pivots, pins, arms
         The topology's table, see :func:`synthesis.fit.linkage.setting.unpack_table`.
     first_places, first_slopes : float, shapes (n, 2) and (n, 2, u)
         Nodes at the first point, and their derivatives, with those of the input there.
@@ -175,6 +219,16 @@ def write_static_margins(
                 values[number] = toward * (first_places[pins[k], side // 2] - limit)
                 gradients[number] = toward * first_slopes[pins[k], side // 2]
             number += 1
+    for k in range(len(arms)):
+        if setting[REACH] < np.inf:
+            a, b = arms[k]
+            dx, dy = z[2 * a] - z[2 * b], z[2 * a + 1] - z[2 * b + 1]
+            square = dx * dx + dy * dy
+            values[number] = math.log(setting[REACH]) - 0.5 * math.log(square)
+            gradients[number] = 0.0
+            gradients[number, 2 * a], gradients[number, 2 * a + 1] = -dx / square, -dy / square
+            gradients[number, 2 * b], gradients[number, 2 * b + 1] = dx / square, dy / square
+        number += 1
     for k in range(EQUATION_COUNT):
         given = setting[GIVEN_PIVOTS][k]
         if not math.isnan(given):
@@ -183,6 +237,25 @@ def write_static_margins(
             gradients[last] = 0.0
             gradients[last, at] = 1.0
     return number
+
+
+@njit(**OPTIONS)
+def write_order_margin(
+    theta: float, by_last: Real, setting: Real, number: int, values: Real, gradients: Real
+) -> int:  # fmt: skip
+    """Write the margin of the whole rotation of ordered inputs as ``number``; return the number of the next margin.
+
+    ``by_last`` are the derivatives of the last input θ by the last unknowns.
+    """
+    if setting[ORDER] == 0.0:
+        return number
+    # Another turn would repeat the positions.
+    values[number] = MAX_ROTATION - abs(theta)
+    gradients[number] = 0.0
+    first = gradients.shape[1] - len(by_last)
+    for k in range(len(by_last)):
+        gradients[number, first + k] = -by_last[k] if theta > 0.0 else by_last[k]
+    return number + 1
 
 
 @njit(**OPTIONS)

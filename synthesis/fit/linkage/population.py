@@ -220,7 +220,7 @@ def _has_one_turn(places: Real, pin: int, pivot: int) -> bool:
 @njit(**OPTIONS)
 def _draw_each(rng: np.random.Generator, setting: Real, cosine: float, z: Real, curves: Complex) -> int:
     """Draw linkages into the rows of ``z``, and their curves; return their number."""
-    nodes, transmitting, _, _, _ = unpack_table(setting)
+    nodes, transmitting = unpack_table(setting)[:2]
     n, steps, point = len(nodes), curves.shape[1], int(setting[POINT_NODE])
     places, drawn = np.zeros((n, steps, 2)), 0
     viewed = setting[TRIAD][0] >= 0.0

@@ -1,6 +1,6 @@
 """Residuals of a linkage at targets, and along the curve of its traced point, in the form of a descent's rows.
 
-A target is a row (kind, i, j, a, b, root, slot, free):
+A target is a row (kind, i, j, a, b, root, slot, free, s, t):
 
 ========= =================================================================================================
 kind      residuals
@@ -15,7 +15,8 @@ An ARM target belongs to a linkage that is seen from its input link, as a Stephe
 on it, is turned by a about its pivot j. Then node i must be at its distance in the reference position from the other
 pivot k, in the direction b from there: they are joined by the output. The weight of the distance has the root ``free``.
 
-They are multiplied by ``root``, the root of a weight. Targets of one slot are consecutive and share an input. A free
+They are multiplied by ``root``, the root of a weight. A residual within ±s of 0 (the second row of a PLACE: ±t) is 0; a
+larger one counts from there: s and t are tolerances. Targets of one slot are consecutive and share an input. A free
 input is eliminated: for each linkage it is moved to the position with the least squares of its slot, by Gauss–Newton
 steps from that of the last accepted linkage, and the Jacobian is that at a fixed input minus its part along the slot's
 derivative by the input (variable projection). Other inputs are constants.
@@ -26,6 +27,10 @@ weighted by the arc length that each step stands for.
 The *robust* form sums w(√(d² + δ²) − δ) instead of squares, which is nearly the mean distance, and takes the place of
 the curve that is nearest to each point, in any order. With f = √(d² + δ²) a distance has
 the row √(w/f) d, whose gradient is exact; one more row without derivatives, √Σ w(f − δ)²/f, completes the sum.
+
+*Ordered* inputs are not eliminated, because the input that suits a slot best may be out of order. The last unknowns are
+the logarithms of the steps from each input to the next; the first input is 0, and all steps have one direction, which
+a descent keeps.
 
 A linkage moves over a full turn of its input, or in a range whose ends are the last two unknowns (robust form) or the
 outermost inputs of the targets and of the reference position (squares). One that does not close throughout is refused.
@@ -53,21 +58,22 @@ from synthesis.fit.linkage.margins import (
     count_step_margins,
     is_loaded,
     spread_slopes,
+    write_order_margin,
     write_static_margins,
     write_step_gradients,
     write_step_values,
 )
-from synthesis.fit.linkage.setting import BACK, FULL_TURN, POINT_NODE, STEPS, WIDTH, unpack_table
+from synthesis.fit.linkage.setting import BACK, FULL_TURN, ORDER, POINT_NODE, STEPS, WIDTH, unpack_table
 from synthesis.numerics.augmented_lagrangian import append_limit_rows
 from synthesis.numerics.levenberg import ROWS
 
 PLACE, TURN, DIRECTION, ARM = range(4)
 """Kinds of targets."""
 
-KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE = range(8)
+KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE, TOLERANCE, SECOND_TOLERANCE = range(10)
 """Columns of targets."""
 
-TARGET_SIZE = 8
+TARGET_SIZE = 10
 """Number of columns of targets."""
 
 MAX_SETTLING_STEPS, MAX_INPUT_STEP, INPUT_TOLERANCE = 2, 0.25, 1e-7
@@ -152,6 +158,12 @@ def _carry_slopes(target: Real, turn: Real, slopes: Real) -> None:
 
 
 @njit(**OPTIONS)
+def _exceed_tolerance(residual: float, tolerance: float) -> float:
+    """Return the part of a residual beyond a tolerance, with its sign."""
+    return math.copysign(max(abs(residual) - tolerance, 0.0), residual)
+
+
+@njit(**OPTIONS)
 def _measure_slot(
     targets: Real, first: int, last: int, z: Real, places: Real, rates: Real, residuals: Real, tangent: Real
 ) -> int:
@@ -161,8 +173,10 @@ def _measure_slot(
         i, root = int(targets[t, FIRST_NODE]), targets[t, ROOT]
         if targets[t, KIND] == PLACE:
             for axis in range(2):
-                residuals[m] = root * (places[i, axis] - targets[t, X + axis])
-                tangent[m] = root * rates[i, axis]
+                off = _exceed_tolerance(places[i, axis] - targets[t, X + axis], targets[t, TOLERANCE + axis])
+                residuals[m] = root * off
+                # Within its tolerance a coordinate does not depend on anything.
+                tangent[m] = 0.0 if off == 0.0 and targets[t, TOLERANCE + axis] > 0.0 else root * rates[i, axis]
                 m += 1
         elif targets[t, KIND] == ARM:
             arm, length = _carry_arm(targets[t], z, places)
@@ -179,10 +193,12 @@ def _measure_slot(
                 hx, hy = z[2 * j] - z[2 * i], z[2 * j + 1] - z[2 * i + 1]
             off = math.atan2(hx * gy - hy * gx, hx * gx + hy * gy) - targets[t, X]
             # Rotations are compared modulo full turns.
-            off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+            off = _exceed_tolerance(off - 2.0 * math.pi * round(off / (2.0 * math.pi)), targets[t, TOLERANCE])
             residuals[m] = root * off
             turn = gx * (rates[j, 1] - rates[i, 1]) - gy * (rates[j, 0] - rates[i, 0])
             tangent[m] = root * turn / (gx * gx + gy * gy)
+            if off == 0.0 and targets[t, TOLERANCE] > 0.0:
+                tangent[m] = 0.0
             m += 1
     return m
 
@@ -215,7 +231,9 @@ def _settle_input(
 
 
 @njit(**OPTIONS)
-def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Real, slopes: Real, rows: Real) -> None:
+def _write_slot_slopes(
+    targets: Real, first: int, last: int, z: Real, places: Real, slopes: Real, residuals: Real, rows: Real
+) -> None:
     """Write the derivatives of a slot's residuals by the unknowns, at a fixed input."""
     count, m = slopes.shape[2] - 1, 0
     for t in range(first, last):
@@ -223,8 +241,9 @@ def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Re
         if targets[t, KIND] == PLACE:
             for axis in range(2):
                 rows[m] = 0.0
-                for c in range(count):
-                    rows[m, c] = root * slopes[i, axis, 1 + c]
+                if not (residuals[m] == 0.0 and targets[t, TOLERANCE + axis] > 0.0):
+                    for c in range(count):
+                        rows[m, c] = root * slopes[i, axis, 1 + c]
                 m += 1
         elif targets[t, KIND] == ARM:
             _write_carried_slopes(targets[t], z, places, slopes, rows[m:])
@@ -245,6 +264,8 @@ def _write_slot_slopes(targets: Real, first: int, last: int, z: Real, places: Re
                 rows[m, 2 * j + 1] -= by_reference * hx
                 rows[m, 2 * i] -= by_reference * hy
                 rows[m, 2 * i + 1] += by_reference * hx
+            if residuals[m] == 0.0 and targets[t, TOLERANCE] > 0.0:
+                rows[m] = 0.0
             m += 1
 
 
@@ -308,6 +329,18 @@ def find_nearest_side(x: float, y: float, targets: Real, closed: bool) -> tuple[
 
 
 @njit(**OPTIONS)
+def _write_ordered_inputs(logs: Real, inputs: Real, by_last: Real) -> None:
+    """Write ordered inputs from the logarithms of their steps, and the derivatives of the last one by these."""
+    # The direction is that of the last accepted linkage, or of the start.
+    way = math.copysign(1.0, inputs[len(inputs) - 1])
+    if len(by_last) > 0:
+        inputs[0] = 0.0
+    for k in range(len(by_last)):
+        by_last[k] = way * math.exp(logs[k])
+        inputs[k + 1] = inputs[k] + by_last[k]
+
+
+@njit(**OPTIONS)
 def _trace_steps(
     nodes: Integers, z: Real, constants: Real, low: float, per: float, point: int, places: Real, cosines: Real,
     curve: Real,
@@ -347,13 +380,14 @@ def _measure_arcs(curve: Real, closed: bool, arcs: Real) -> None:
 @njit(**OPTIONS)
 def _write_target_rows(
     x: Real, targets: Real, setting: Real, nodes: Integers, constants: Real, curve: Real, begin: float, per: float,
-    low: float, high: float, inputs: Real, turns: Real, first_places: Real, first_slopes: Real, residuals: Real,
-    jacobian: Real,
+    low: float, high: float, inputs: Real, by_last: Real, turns: Real, first_places: Real, first_slopes: Real,
+    residuals: Real, jacobian: Real,
 ) -> tuple[int, float]:  # fmt: skip
     """Write the rows of all targets; return their number and the part of the robust sum that they leave out.
 
     The number is −1 if the linkage does not close at an input. ``inputs`` (slots,) settle in place within [low, high].
     ``curve`` (steps, 2) is the traced curve from the input ``begin`` in steps of ``per``, for the robust form.
+    ``by_last`` are the derivatives of the last of ordered inputs by its unknowns, else it is empty.
     ``turns`` (slots or 0, unknowns) receive the derivatives of the inputs.
     ``first_places`` and ``first_slopes`` receive the nodes at the first target and their derivatives.
     """
@@ -363,7 +397,7 @@ def _write_target_rows(
     slopes, tangent, turn = np.zeros((n, 2, 1 + 2 * n)), np.empty(2 * count), np.zeros(unknowns)
     left_out, m, first = 0.0, 0, 0
     while first < count:
-        slot, free = int(targets[first, SLOT]), targets[first, FREE] > 0.0
+        slot, free = int(targets[first, SLOT]), targets[first, FREE] > 0.0 and setting[ORDER] == 0.0
         last = first + 1
         while last < count and int(targets[last, SLOT]) == slot:
             last += 1
@@ -386,9 +420,13 @@ def _write_target_rows(
         for k in range(n):
             rates[k, 0], rates[k, 1] = slopes[k, 0, 0], slopes[k, 1, 0]
         added = _measure_slot(targets, first, last, x, places, rates, residuals[m:], tangent)
-        _write_slot_slopes(targets, first, last, x, places, slopes, jacobian[m:])
+        _write_slot_slopes(targets, first, last, x, places, slopes, residuals[m:], jacobian[m:])
         turn[:] = 0.0
-        if free and low < theta < high:
+        if setting[ORDER] != 0.0:
+            for c in range(slot):
+                for k in range(added):
+                    jacobian[m + k, 2 * n + c] += tangent[k] * by_last[c]
+        elif free and low < theta < high:
             _eliminate_input(tangent, added, jacobian[m:], turn)
         elif free:
             # At an end of the range the input moves with it.
@@ -437,8 +475,8 @@ def _write_back_row(
 @njit(**OPTIONS)
 def _write_step_rows(
     x: Real, targets: Real, setting: Real, multipliers: Real, nodes: Integers, transmitting: Integers, pins: Integers,
-    constants: Real, curve: Real, begin: float, per: float, inputs: Real, turns: Real, number: int, values: Real,
-    gradients: Real, m: int, residuals: Real, jacobian: Real,
+    constants: Real, curve: Real, begin: float, per: float, by_last: Real, carried: bool, inputs: Real, turns: Real,
+    number: int, values: Real, gradients: Real, m: int, residuals: Real, jacobian: Real,
 ) -> tuple[int, float]:  # fmt: skip
     """Write the margins of all steps of the input, from ``number`` on, and the rows of the way back, from m on.
 
@@ -447,7 +485,7 @@ def _write_step_rows(
     """
     n, steps, full, back = len(nodes), len(curve), setting[FULL_TURN] > 0.0, setting[BACK] > 0.0
     places, cosines, slopes = np.empty((n, 2)), np.zeros(n), np.zeros((n, 2, 1 + 2 * n))
-    arcs, by_ends = np.empty(steps), np.zeros(2)
+    arcs, by_ends = np.empty(steps), np.zeros(max(2, len(by_last)))
     step_count, hand, left_out = count_step_margins(transmitting, setting), 0.0, 0.0
     if back:
         if setting[WIDTH] <= 0.0 and not _trace_steps(
@@ -456,7 +494,6 @@ def _write_step_rows(
             return -1, 0.0
         _measure_arcs(curve, full, arcs)
     for k in range(steps):
-        carried = k < len(turns)
         theta = inputs[k] if carried else begin + per * k
         if not close_linkage(nodes, x, constants, theta, places, cosines):
             return -1, 0.0
@@ -477,6 +514,11 @@ def _write_step_rows(
             if not full and setting[WIDTH] > 0.0:
                 by_ends[1] = k / max(steps - 1.0, 1.0)
                 by_ends[0] = 1.0 - by_ends[1]
+            elif not full:
+                # The steps go from the lower end to the upper one, of which one is 0 and the other the last input.
+                share = k / max(steps - 1.0, 1.0)
+                for c in range(len(by_last)):
+                    by_ends[c] = (share if by_last[c] > 0.0 else 1.0 - share) * by_last[c]
         if loaded:
             write_step_gradients(
                 nodes, x, constants, transmitting, pins, places, slopes, by_ends, cosines, setting, number, values,
@@ -499,7 +541,7 @@ def compute_linkage_rows(
     ----------
     x : float, shape (2n,) or (2n + 2,)
         Coordinates of the nodes, and the ends of the range of inputs if the input does not turn through.
-    targets : float, shape (targets, 8)
+    targets : float, shape (targets, 10)
         See the module's docstring.
     setting : float
         From :func:`synthesis.fit.linkage.setting.pack_topology`.
@@ -510,7 +552,7 @@ def compute_linkage_rows(
     """
     if not np.abs(x).max() < MAX_COORDINATE:
         return -1
-    nodes, transmitting, pairs, pivots, pins = unpack_table(setting)
+    nodes, transmitting, pairs, pivots, pins, arms = unpack_table(setting)
     n, unknowns, steps = len(nodes), len(x), int(setting[STEPS])
     full, robust, limits = setting[FULL_TURN] > 0.0, setting[WIDTH] > 0.0, count_margins(setting)
     slots = len(state) - limits
@@ -530,9 +572,12 @@ def compute_linkage_rows(
         return -1
     first_slopes = np.empty((n, 2, unknowns))
     # The steps of a linkage that carries its ground are its targets.
-    turns = np.empty((steps if targets[0, KIND] == ARM else 0, unknowns))
+    carried = targets[0, KIND] == ARM
+    turns = np.empty((steps if carried else 0, unknowns))
+    by_last = np.empty(slots - 1 if setting[ORDER] != 0.0 else 0)
+    _write_ordered_inputs(x[2 * n :], state[:slots], by_last)
     m, left_out = _write_target_rows(
-        x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], turns, places,
+        x, targets, setting, nodes, constants, curve, begin, per, low, high, state[:slots], by_last, turns, places,
         first_slopes, residuals, jacobian,
     )  # fmt: skip
     if m < 0:
@@ -543,10 +588,13 @@ def compute_linkage_rows(
         per = (high - begin) / max(steps - 1, 1)
     values, gradients = state[slots:], np.empty((limits, unknowns))
     values[:] = np.inf
-    number = write_static_margins(x, pairs, pivots, pins, places, first_slopes, setting, multipliers, values, gradients)
+    number = write_static_margins(
+        x, pairs, pivots, pins, arms, places, first_slopes, setting, multipliers, values, gradients
+    )  # fmt: skip
+    number = write_order_margin(state[slots - 1], by_last, setting, number, values, gradients)
     m, more = _write_step_rows(
-        x, targets, setting, multipliers, nodes, transmitting, pins, constants, curve, begin, per, state[:slots],
-        turns, number, values, gradients, m, residuals, jacobian,
+        x, targets, setting, multipliers, nodes, transmitting, pins, constants, curve, begin, per, by_last, carried,
+        state[:slots], turns, number, values, gradients, m, residuals, jacobian,
     )  # fmt: skip
     if m < 0:
         return -1

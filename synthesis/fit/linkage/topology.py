@@ -57,6 +57,9 @@ class Topology:
         Name of the link that has the traced point.
     point : int
         Node of the traced point, as the ground sees it; without one, the last pin.
+    heading : int
+        Node of a second point of the same link, whose direction from the traced point is the link's; negative if there
+        is none.
     joints : dict of str to int
         Nodes of all joints as the ground sees them, by name.
     families : tuple of int
@@ -72,6 +75,7 @@ class Topology:
     body: str
     point: int
     joints: dict[str, int]
+    heading: int = -1
     families: tuple[int, ...] = ()
     triad: tuple[int, ...] = ()
 
@@ -81,10 +85,21 @@ class Topology:
         found = [pair for pins in self.links.values() for pair in combinations(pins, 2)]
         return np.array(found, np.int64)
 
+    @property
+    def arms(self) -> Integers:
+        """The traced point, where its coordinates are, and each pin of its link, shape (a, 2); empty without one."""
+        if "P" not in self.joints:
+            return np.empty((0, 2), np.int64)
+        return np.array([(self.get_source(self.point), pin) for pin in self.links[self.body]], np.int64)
+
     @cached_property
     def pin_names(self) -> dict[int, str]:
         """Names of the joints by the nodes in :attr:`links`, which are not their views."""
-        return {int(self.nodes[k, 1] if self.nodes[k, 0] == VIEW else k): name for name, k in self.joints.items()}
+        return {self.get_source(k): name for name, k in self.joints.items()}
+
+    def get_source(self, node: int) -> int:
+        """Return the node of a view, or a node itself if it is none: the one that has coordinates."""
+        return int(self.nodes[node, 1]) if self.nodes[node, 0] == VIEW else node
 
     @property
     def transmitting(self) -> Mask:
@@ -104,13 +119,18 @@ class Topology:
         still = {self.pin_names[pin] for pin in self.fixed_pivots}
         return tuple(node for name, node in self.joints.items() if name not in {"P", *still})
 
+    @property
+    def measured_direction(self) -> tuple[int, int]:
+        """Nodes of the direction that targets refer to: that of the body if it has a heading, else of the output."""
+        return (self.point, self.heading) if self.heading >= 0 else self.get_direction("output")
+
     def get_direction(self, link: str) -> tuple[int, int]:
         """Return the first two nodes of a link as the ground sees them: its direction."""
         first, second, *_ = (self.joints[self.pin_names[pin]] for pin in self.links[link])
         return first, second
 
 
-def build_topology(dyads: Dyads, *, traces: bool = True) -> Topology:
+def build_topology(dyads: Dyads, *, traces: bool = True, guides: bool = False) -> Topology:
     """Build the topology of a chain of dyads; the traced point is on the first link of the last dyad.
 
     Parameters
@@ -119,6 +139,8 @@ def build_topology(dyads: Dyads, *, traces: bool = True) -> Topology:
         The links to which each dyad is joined, :data:`FIRST_DYAD` first.
     traces : bool
         Whether there is a traced point.
+    guides : bool
+        Whether the link with the traced point has a heading.
     """
     rows: list[tuple[int, ...]] = [(FIXED,), (CRANK, 0)]
     names = ["O2", "A"]
@@ -143,13 +165,17 @@ def build_topology(dyads: Dyads, *, traces: bool = True) -> Topology:
     if traces:
         rows.append((POINT, *pins[body][:2]))
         names.append("P")
+    point = len(rows) - 1
+    if guides:
+        rows.append((POINT, *pins[body][:2]))
     link_names = _name_links(dyads)
     return Topology(
         nodes=_pad_rows(rows),
         links={link_names[link]: tuple(listed) for link, listed in sorted(pins.items())},
         body=link_names[body],
-        point=len(rows) - 1,
+        point=point,
         joints={name: node for node, name in enumerate(names)},
+        heading=len(rows) - 1 if guides else -1,
         families=_find_first_fourbar(pins),
     )
 
@@ -175,11 +201,11 @@ def _find_first_fourbar(pins: dict[int, list[int]]) -> tuple[int, ...]:
     return tuple(pairs.index((pins[link][0], pins[link][1])) for link in (GROUND, INPUT, COUPLER, ROCKER))
 
 
-STEPHENSON_2_BODIES = {"link_3": (0, 1), "link_4": (1, 3), "link_5": (2, 3)}
+STEPHENSON_2_BODIES = {"link_4": (1, 3), "link_3": (0, 1), "link_5": (2, 3)}
 """Links of a Stephenson II that may carry the point, with the two nodes of :func:`build_stephenson_2` on them."""
 
 
-def build_stephenson_2(body: str, *, traces: bool = True) -> Topology:
+def build_stephenson_2(body: str, *, traces: bool = True, guides: bool = False) -> Topology:
     """Build a Stephenson II as its input link sees it, with the views that the ground has of its joints.
 
     Link 3 rotates about A relative to the input and drives the fourbar A B D C; the output, from E on link 4, and the
@@ -191,8 +217,13 @@ def build_stephenson_2(body: str, *, traces: bool = True) -> Topology:
     if traces:
         rows += [(DYAD, e, o2), (POINT, *STEPHENSON_2_BODIES[body])]
         moving = seen | {"P": p}
+        if guides:
+            rows.append((POINT, *STEPHENSON_2_BODIES[body]))
+        first_view = len(rows)
         rows += [(VIEW, node, o2, o4) for node in moving.values()]
-        seen = {name: len(rows) - len(moving) + k for k, name in enumerate(moving)}
+        seen = {name: first_view + k for k, name in enumerate(moving)}
+        if guides:
+            rows.append((VIEW, p + 1, o2, o4))
     else:
         # Targets carry the ground along: link 3 may turn back, where ground and output are in line.
         rows.append((FIXED,))
@@ -203,21 +234,18 @@ def build_stephenson_2(body: str, *, traces: bool = True) -> Topology:
         body=body,
         point=seen["P" if traces else "E"],
         joints={"O2": o2, "O4": o4} | seen,
+        heading=len(rows) - 1 if guides else -1,
         triad=(e, o4, a, b, c, d),
     )
 
 
-SIXBAR_FORMS: dict[str, tuple[Topology, ...]] = {
-    "watt_1": tuple(
-        build_topology((FIRST_DYAD, pair))
-        for pair in ((COUPLER, ROCKER), (ROCKER, COUPLER), (COUPLER, INPUT), (INPUT, COUPLER))
-    ),
-    "stephenson_1": tuple(build_topology((FIRST_DYAD, pair)) for pair in ((INPUT, ROCKER), (ROCKER, INPUT))),
-    "stephenson_2": tuple(map(build_stephenson_2, ("link_4", "link_3", "link_5"))),
-    "stephenson_3": (build_topology((FIRST_DYAD, (COUPLER, GROUND))),),
+SIXBAR_DYADS: dict[str, Dyads] = {
+    "watt_1": ((COUPLER, ROCKER), (ROCKER, COUPLER), (COUPLER, INPUT), (INPUT, COUPLER)),
+    "stephenson_1": ((INPUT, ROCKER), (ROCKER, INPUT)),
+    "stephenson_3": ((COUPLER, GROUND),),
 }
-"""Topologies of sixbars whose traced point is on a link that is joined neither to the ground nor to the fourbar alone,
-or on any moving link of a Stephenson II."""
+"""Second dyads of sixbars whose traced point is on a link that is joined neither to the ground nor to the fourbar
+alone."""
 
 FUNCTION_SIXBARS: dict[str, Topology] = {
     "watt_2": build_topology((FIRST_DYAD, (ROCKER, GROUND)), traces=False),
@@ -231,13 +259,20 @@ EIGHTBAR_DYAD_COUNT = 3
 
 
 @cache
-def list_forms(kind: str) -> tuple[Topology, ...]:
-    """Return the topologies of a type of linkage: a sixbar of :data:`SIXBAR_FORMS`, or ``eightbar``."""
+def list_forms(kind: str, *, guides: bool = False) -> tuple[Topology, ...]:
+    """Return the topologies of a type of linkage: a sixbar of :data:`SIXBAR_DYADS`, ``stephenson_2`` or ``eightbar``.
+
+    ``guides`` asks for headings of the link with the traced point.
+    """
+    if kind == "stephenson_2":
+        return tuple(build_stephenson_2(body, guides=guides) for body in STEPHENSON_2_BODIES)
     # Eightbars have 88 topologies, too many to name: the type stands for all of them.
-    return tuple(list_chains(EIGHTBAR_DYAD_COUNT)) if kind == "eightbar" else SIXBAR_FORMS[kind]
+    if kind == "eightbar":
+        return tuple(list_chains(EIGHTBAR_DYAD_COUNT, guides=guides))
+    return tuple(build_topology((FIRST_DYAD, pair), guides=guides) for pair in SIXBAR_DYADS[kind])
 
 
-def list_chains(dyad_count: int) -> list[Topology]:
+def list_chains(dyad_count: int, *, guides: bool = False) -> list[Topology]:
     """Return all topologies of a number of dyads in which every dyad moves the traced point."""
     chains: list[Dyads] = [(FIRST_DYAD,)]
     for number in range(2, dyad_count + 1):
@@ -250,7 +285,7 @@ def list_chains(dyad_count: int) -> list[Topology]:
             for j in links
             if i != j and (i != GROUND if last else i < j)
         ]
-    return [build_topology(_ground_second(chain)) for chain in chains if _moves_point(chain)]
+    return [build_topology(_ground_second(chain), guides=guides) for chain in chains if _moves_point(chain)]
 
 
 def _ground_second(chain: Dyads) -> Dyads:

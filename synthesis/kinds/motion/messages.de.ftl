@@ -376,10 +376,6 @@ motion-sixbars-from-chains =
         [one] { $count } Sechsgelenk aus Ketten mit zwei führenden Kurbeln wurde bewertet
        *[other] { $count } Sechsgelenke aus Ketten mit zwei führenden Kurbeln wurden bewertet
     }
-motion-both-sixbar-searches = { $first } und { $second }
-motion-stephenson-2-without-crank =
-    Ein Sechsgelenk Stephenson II braucht eine Kurbel zwischen Körper und Gestell, und keine gefundene Kurbel erfüllt
-    diese Lagen
 motion-no-sixbar-feasible = { $effort }; kein gefundener Entwurf erfüllt alle Bedingungen.
 motion-sixbars-verified =
     { $effort }; { $designs ->

@@ -349,7 +349,7 @@ motion-no-fit-feasible =
 motion-closer-possible =
     The fit starts from many points but is not exhaustive, so a closer linkage may exist.
 
-# Summaries of searches for sixbars. The first four are the beginning of a sentence, { $effort } in the next two.
+# Summaries of searches for sixbars. The first two are the beginning of a sentence, { $effort } in the next two.
 
 motion-sixbars-fitted =
     { $count ->
@@ -361,9 +361,6 @@ motion-sixbars-from-chains =
         [one] { $count } sixbar from chains with two constraining cranks was evaluated
        *[other] { $count } sixbars from chains with two constraining cranks were evaluated
     }
-motion-both-sixbar-searches = { $first } and { $second }
-motion-stephenson-2-without-crank =
-    A Stephenson II sixbar needs a crank between body and ground, and no crank found meets these positions
 motion-no-sixbar-feasible = { $effort }; no design found satisfies all constraints.
 motion-sixbars-verified =
     { $effort }; { $designs ->

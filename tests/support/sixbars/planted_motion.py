@@ -14,9 +14,10 @@ import statistics
 
 import numpy as np
 
-from synthesis.kinds.motion.sixbar import residuals as rows
-from synthesis.kinds.motion.sixbar.dyad_assembly import O4, Q1, Q2, A, B, J, compute_signed_sine
-from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES
+from kinematics.arrays import Complex, Real
+from synthesis.fit.linkage.closure import trace_linkage
+from synthesis.fit.linkage.topology import VIEW, Topology, list_forms
+from synthesis.fit.triad_slant import find_min_slant
 from synthesis.kinds.motion.task.ranking import get_rms_error
 from tests.support.sixbars.motion import REACH, SIXBARS, SOUND, Task, false_claim, solved, sound, stated
 from tests.support.sixbars.spread import each
@@ -28,35 +29,34 @@ FOUND = 1e-6
 """Root mean square over many positions of a distance in task sizes and an angle in radians."""
 
 
-def planted(rng: np.random.Generator, make: int, count: int) -> Task:
-    """So many positions of a random sixbar."""
-    at, turns = np.empty(6, complex), np.ones(4, complex)
+def planted(rng: np.random.Generator, form: Topology, count: int) -> Task:
+    """So many positions of a random sixbar of a topology with a heading."""
+    n, shown = len(form.nodes), form.nodes[:, 0] == VIEW
     while True:
-        z = rng.normal(size=7) + 1j * rng.normal(size=7)
-        setting = np.zeros(rows.SETTING.size)
-        sides = (
-            math.copysign(1.0, compute_signed_sine(z[A], z[O4], z[B])),
-            math.copysign(1.0, compute_signed_sine(z[Q1], z[Q2], z[J])),
-        )
-        setting[[rows.TOPOLOGY, rows.FIRST_SIDE, rows.SECOND_SIDE]] = make, *sides
-        lengths, inverses = np.empty(4), np.empty(4, complex)
-        rows.compute_dimensions(z, lengths, inverses)
+        z = rng.normal(size=n) + 1j * rng.normal(size=n)
+        z[shown] = 0.0
         steps = rng.uniform(0.2, 1.0, count - 1) if count == FEW else np.ones(count - 1)
         inputs = np.concatenate([[0.0], np.cumsum(steps)])
         inputs *= rng.uniform(math.radians(40.0), math.radians(300.0)) / inputs[-1]
-        points, angles, most = [], [], 0.0
-        for angle in [*np.linspace(0.0, inputs[-1], 80), *inputs]:
-            most = max(most, *map(abs, rows.drive_linkage(z, lengths, inverses, setting, angle, at, turns)))
-            if most > math.cos(math.radians(SOUND)):
-                break
-            points.append(at[5])
-            angles.append(np.degrees(np.angle(turns[3])))
-        else:
-            met = np.array(points[-count:])
-            size = np.abs(met[:, None] - met).max()
-            spread = np.abs(np.append(z, 0.0)[:, None] - np.append(z, 0.0)).max()
-            if spread <= REACH * size:
-                return stated(100.0 * met, np.array(angles[-count:]))
+        every = np.concatenate([np.linspace(0.0, inputs[-1], 80), inputs])
+        places, cosines = np.empty((len(every), n, 2)), np.zeros((len(every), n))
+        trace_linkage(form.nodes, z.view(float), every, places, cosines)
+        if not np.isfinite(places).all() or not _transmits(form, places @ [1.0, 1.0j], cosines):
+            continue
+        points = places[-count:, form.point] @ [1.0, 1.0j]
+        angles = np.unwrap(np.angle(places[-count:, form.heading] @ [1.0, 1.0j] - points))
+        size, pins = np.abs(points[:, None] - points).max(), z[~shown]
+        if np.abs(pins[:, None] - pins).max() <= REACH * size:
+            return stated(100.0 * points, np.degrees(angles))
+
+
+def _transmits(form: Topology, places: Complex, cosines: Real) -> bool:
+    """Whether a motion transmits soundly, and never turns over."""
+    limit = math.cos(math.radians(SOUND))
+    if not form.triad:
+        return bool(np.abs(cosines).max() <= limit)
+    slants = [find_min_slant(*row[list(form.triad)]) for row in places]
+    return max(abs(slant[0]) for slant in slants) <= limit and len({slant[1] > 0.0 for slant in slants}) == 1
 
 
 def tried(kind: str, task: Task) -> tuple[bool, float, list[str]]:
@@ -71,8 +71,8 @@ def table(tasks: int, seed: int) -> None:
     print(f"{'planted':<16}{'positions':>10}{'tasks':>6}{'found %':>9}{'CPU s':>8}{'most':>7}{'false':>8}")
     for count, kind in itertools.product((FEW, MANY), SIXBARS):
         rng = np.random.default_rng(seed)
-        of_kind = [n for n, make in enumerate(TOPOLOGIES) if make.type == kind]
-        drawn = [(kind, planted(rng, of_kind[n % len(of_kind)], count)) for n in range(tasks)]
+        forms = list_forms(kind, guides=True)
+        drawn = [(kind, planted(rng, forms[n % len(forms)], count)) for n in range(tasks)]
         found, times, faults = zip(*each(tried, drawn), strict=True)
         listed = [fault for of_task in faults for fault in of_task]
         share = 100.0 * sum(found) / tasks

@@ -9,7 +9,10 @@ import numpy as np
 from kinematics.arrays import Real
 from synthesis.fit.linkage.closure import CONSTANT_COUNT, close_linkage, compute_constants
 from synthesis.fit.linkage.population import Population
-from synthesis.fit.linkage.topology import SIXBAR_FORMS, Topology, list_chains
+from synthesis.fit.linkage.topology import Topology, list_chains, list_forms
+
+SIXBAR_FORMS = {kind: list_forms(kind) for kind in ("watt_1", "stephenson_1", "stephenson_2", "stephenson_3")}
+"""Topologies of the sixbars that trace or guide, by type."""
 
 EIGHTBARS = list_chains(3)
 TOPOLOGIES = {f"{kind}-{n}": form for kind, forms in SIXBAR_FORMS.items() for n, form in enumerate(forms)}

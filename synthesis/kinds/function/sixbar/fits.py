@@ -18,8 +18,16 @@ import numpy as np
 from kinematics.arrays import Complex, Real
 from synthesis.fit.linkage import setting as fields
 from synthesis.fit.linkage.closure import trace_linkage
-from synthesis.fit.linkage.descent import Fit, FitRows, FitTask, build_function_targets, evaluate_rows
-from synthesis.fit.linkage.setting import pack_topology
+from synthesis.fit.linkage.descent import (
+    MAX_SETTLING_CALLS,
+    SETTLED_INPUT,
+    Fit,
+    FitRows,
+    FitTask,
+    build_function_targets,
+    evaluate_rows,
+)
+from synthesis.fit.linkage.setting import pack_topology, pack_unlimited
 from synthesis.fit.linkage.topology import Topology
 from synthesis.kinds.function.fourbar.constraints import LIMIT_MARGIN
 from synthesis.kinds.function.problem import FunctionProblem
@@ -33,13 +41,6 @@ DEFAULT_MAX_RATIO = 1e3
 
 SMALL_ROOT = 1e-5
 """Root of the output's weight relative to the input's that leaves all of a Stephenson II's error to the output."""
-
-SETTLED_INPUT, MAX_SETTLING_CALLS = 1e-12, 20
-"""Last step of a settled input, radians, and maximum number of evaluations that settle it."""
-
-
-pack_unlimited = cache(pack_topology)
-"""Pack a topology with no limits, once; do not change the result."""
 
 
 @dataclass(frozen=True, eq=False)

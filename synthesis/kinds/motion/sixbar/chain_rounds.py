@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from kinematics.arrays import Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar import chain_kernels as kernels
-from synthesis.kinds.motion.sixbar.random_chains import compute_needed_motion, sample_chains, sample_poses
+from synthesis.kinds.motion.sixbar.random_chains import sample_chains, sample_poses
 from synthesis.kinds.motion.sixbar.topologies import SixbarCandidates
 from synthesis.kinds.motion.statement.mechanism_types import Chain
-from synthesis.kinds.motion.task.positions import MotionTask
+from synthesis.kinds.motion.task.positions import MotionTask, compute_needed_motion
 from synthesis.kinds.motion.task.target_poses import TargetPoses
 
 CHAINS_PER_ROUND, CLIMBER_COUNT, MAX_STEPS = 1500, 40, 200

@@ -20,18 +20,11 @@ O2, A, B, O4, Q1, Q2, J = range(7)
 GROUND, INPUT, COUPLER, OUTPUT = range(4)
 """Links that may carry Q₁ and Q₂."""
 
-TOPOLOGY_LINKS = np.array(
-    [[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT], [INPUT, COUPLER],
-     [OUTPUT, COUPLER], [COUPLER, GROUND]]
-)  # fmt: skip
-"""Links of Q₁ and of Q₂, by topology number. Only :mod:`synthesis.kinds.motion.sixbar.basin_hopping` uses the last
-three: two that contain no 3R chain in the sense of :mod:`synthesis.kinds.motion.sixbar.chain_kernels`, and the
-Stephenson II, which is described relative to its input link (:mod:`synthesis.kinds.motion.sixbar.inversion`)."""
+TOPOLOGY_LINKS = np.array([[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT]])
+"""Links of Q₁ and of Q₂, by topology number."""
 
-WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT, WATT_1_INVERTED_IN, WATT_1_INVERTED_OUT = range(
-    7
-)
-STEPHENSON_2 = 7
+WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT = range(5)
+"""Numbers of the topologies, by the link that is the input."""
 
 LINK_PINS = np.array([[O2, O4], [O2, A], [A, B], [O4, B]])
 """Pins of each link of the fourbar."""

@@ -145,9 +145,3 @@ def _apply_given(task: MotionTask, requested: PartialPoint | None, drawn: Comple
 
 def _to_pair(z: complex) -> tuple[float, float]:
     return z.real, z.imag
-
-
-def compute_needed_motion(task: MotionTask) -> Real:
-    """Return P's path length (task sizes) and the body's rotation (radians) that the target positions need."""
-    turns = task.turns[1:] / task.turns[:-1]
-    return np.array([np.abs(np.diff(task.points)).sum(), np.abs(np.angle(turns)).sum()])

@@ -1,286 +1,400 @@
-"""Motion generation by sixbars: descents that stay on their branch, and constrained chains if a chain is given.
+"""Motion generation by sixbars, fitted to the positions by the engine of :mod:`synthesis.fit.linkage`.
 
-Descents from random linkages (:mod:`~synthesis.kinds.motion.sixbar.descent_rounds`) find sixbars for almost all
-problems, including many that random chains (:mod:`~synthesis.kinds.motion.sixbar.chain_rounds`) do not solve in hours.
-Chains are sampled if one is given. They alternate with descents if a Grashof class, a full rotation, a region or a box
-is required, which a descent ignores or reaches with difficulty. Chains support at most five positions. If positions are
-fitted without tolerances, the candidates with the smallest errors are fitted by least squares until convergence
-(:mod:`~synthesis.kinds.motion.sixbar.least_squares`). All returned designs are driven and verified like any linkage.
+A round, for all topologies of the requested types together:
+
+1. random linkages that close over as many inputs descend on all of their dimensions to the positions, with the
+   constraints as penalties;
+2. those that miss form a pool, whose members hop from basin to basin;
+3. those that meet the positions leave the pool. They have freedoms left, which serve a larger transmission angle and
+   smaller links as long as the positions stay met.
+
+A linkage that does not close between the positions is refused, and inputs out of order are a violated constraint, so
+that fits stay on one branch. If positions are fitted without tolerances, the pool itself converges under enforced
+constraints. Given chains are completed by :mod:`synthesis.kinds.motion.sixbar.chain_rounds` instead. All returned
+designs are driven and verified like any linkage.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from kinematics.arrays import Real
-from kinematics.message import compose, join_messages
+from kinematics.message import compose
+from synthesis.fit.linkage.closure import trace_linkage
+from synthesis.fit.linkage.descent import (
+    Fit,
+    FitTask,
+    build_pose_targets,
+    descend_softly,
+    fit_constrained,
+    hop_basins,
+    perturb_evenly,
+    settle_inputs,
+    sort_fits,
+)
+from synthesis.fit.linkage.mechanism import build_fitted_linkage
+from synthesis.fit.linkage.residuals import SLOT, TARGET_SIZE
+from synthesis.fit.linkage.setting import pack_unlimited
+from synthesis.fit.linkage.topology import Topology, list_forms
+from synthesis.fit.triad_slant import find_min_slant
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.sixbar import candidate_value
-from synthesis.kinds.motion.sixbar.chain_rounds import ChainSearch
-from synthesis.kinds.motion.sixbar.descent_rounds import BranchSearch
-from synthesis.kinds.motion.sixbar.least_squares import compute_fit_value
-from synthesis.kinds.motion.sixbar.topologies import TOPOLOGIES, SixbarCandidates
+from synthesis.kinds.motion.sixbar.chain_solver import solve_by_chains
+from synthesis.kinds.motion.sixbar.limits import Aims, Limits
+from synthesis.kinds.motion.sixbar.starts import draw_starts
+from synthesis.kinds.motion.sixbar.summary import describe_sixbars
 from synthesis.kinds.motion.statement.mechanism_types import Sixbar
-from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS
-from synthesis.kinds.motion.task.positions import MotionTask, make_motion_task
-from synthesis.kinds.motion.task.ranking import get_rms_error, make_ranking
+from synthesis.kinds.motion.task.positions import compute_needed_motion, make_motion_task
+from synthesis.kinds.motion.task.ranking import make_ranking
 from synthesis.kinds.motion.task.target_poses import make_target_poses
 from synthesis.kinds.motion.verification.verify import verify
 from synthesis.model.kind import Progress, scale_progress
-from synthesis.model.linkage.answer import LinkageDesign, SixbarMechanism
-from synthesis.model.linkage.problem import Region
-from synthesis.model.linkage.sixbars import build_sixbar
-from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR
+from synthesis.model.linkage.answer import EightbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.results.candidate_log import DEFECT_REASONS, CandidateLog
 from synthesis.results.ranking import select_distinct
-from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE
+from synthesis.verification.body_motion import compute_ease
+from synthesis.verification.measures import compute_quality
 
-CHAIN_ROUND_SHARE, BRANCH_ROUND_SHARE = 1.0 / 16.0, 1.0 / 72.0
-"""Share of the search budget that a round of chains, or of branches, uses; the search ends when all is used."""
+STARTS_PER_ROUND, FIRST_STEPS = 240, 60
+"""Number of random linkages in a round, over all topologies, and of steps of their descents."""
 
-MIN_ROUNDS = 2
-"""Minimum number of rounds."""
+SAMPLING_WEIGHTS = {
+    "watt_1": (4.0, 1.0, 4.0, 1.0),
+    "stephenson_1": (1.0, 1.0),
+    "stephenson_2": (2.0, 0.5, 0.5),
+    "stephenson_3": (3.0,),
+}
+"""Relative number of random linkages of each topology: largest for those that carry a body through most positions."""
 
-EXTENSION_FACTOR, EXTENSION_SHARE = 3.0, 0.1
-"""Extension of a search that has feasible sixbars, but too few: this factor of the budget used for the first one, plus
-this share."""
+POOL_SIZE, HOPS, HOP_STEPS, GENERATION_COUNT = 30, 30, 60, 16
+"""Number of linkages in the pool; of perturbed copies in a generation; of steps of their descents; of generations in a
+round. Most of the time is spent near the best linkages."""
 
-MAX_STALE_ROUNDS, MIN_COST_RATIO = 8, 0.97
-"""A fit restarts if this many rounds do not lower the cost below this share of its minimum."""
+HOP_RANK, HOP_SIZE = 8.0, 0.1
+"""Mean rank of the linkages that hop, and median size of a hop, task sizes and natural logarithms of steps."""
 
-FIT_BUDGET, EXTENDED_FIT_BUDGET = 0.5, 1.1
-"""Search budget for fits; and the extended budget if positions are almost met, because an exact solution may exist."""
+HALVINGS = 3
+"""Number of times that another perturbation of half the size is tried if a linkage does not close."""
 
-TARGET_ERROR, PROMISING_ERROR = 1e-6, 1e-4
-"""Errors of fits, in task sizes and radians: the search ends when the requested number of fits is below the first, and
-is extended when one fit is below the second."""
+SOFT_WEIGHT = 0.2
+"""Weight of constraints in the search: with a larger one descents end at the constraints, far from the positions."""
+
+SEARCH_STEP_COUNT, STEP_COUNT, FINAL_STEP_COUNT = 16, 24, 72
+"""Numbers of steps of the input at which constraints are penalties in the search and in improvements, and at which they
+are enforced in fits and linkages are evaluated."""
+
+COARSE_TOLERANCE, FINE_TOLERANCE, FINAL_STEPS = 1e-2, 1e-10, 300
+"""Tolerances of descents in the search, where a slow one is left to basin hopping, and of those to the end; and maximum
+number of steps of the latter."""
+
+MET_COST = 1e-22
+"""Half the sum of squares below which a linkage meets all positions and constraints, up to rounding."""
+
+MAX_ROUNDS, EXTENSION_FACTOR, MIN_ROUNDS = 24, 2, 3
+"""Maximum number of rounds; bound of the rounds once a linkage meets the positions, relative to those until then, since
+one shows how hard the problem is; and minimum number, so that not all come from one lucky start."""
 
 RELAXATION_START, RELAXATION_PERIOD = 0.5, 3
-"""Share of the budget after which, without a feasible sixbar, every third round drops the default limits."""
+"""Share of the rounds after which, without a linkage that meets the positions, every third drops the default limits."""
 
-MAX_REACH, MAX_RATIO = 5.0, 20.0
-"""Default limits: maximum distance of two joints of a link, in task sizes, and maximum link ratio."""
+MET_PER_DESIGN, MIN_MET, MIN_MET_CONSTRAINED = 4, 40, 120
+"""Number of linkages that meet the positions at which the search ends: per requested design, and its minimum; and the
+same if obstacles, planes or forces matter, which the search ignores."""
 
-CHAIN_REACH_FACTOR = 2.0
-"""Minimum of the first limit, relative to the longest given length or distance of the chain."""
+IMPROVEMENT_COUNT, IMPROVEMENT_HOP, IMPROVEMENT_DECAY = 14, 0.12, 0.8
+"""Improvement of linkages that meet the positions: number of hops, size of the first, and its factor after a failure.
+"""
 
-ANGLE_MARGIN = 0.5
-"""Margin, degrees, added to a required transmission angle, because the angle is smaller between the sampled steps."""
+FIT_ROUNDS, STALE_GENERATIONS, MIN_COST_RATIO = 14, 32, 0.97
+"""Fits: maximum number of rounds; a pool has converged if this many generations do not lower its least cost below this
+share."""
+
+TARGET_ERROR, PROMISING_ERROR, EXTENSION = 1e-6, 1e-4, 2
+"""Errors of fits, in task sizes and radians: the search ends when the requested number of fits is below the first, and
+is extended by the factor when one fit is below the second, because an exact solution may exist."""
+
+EXACT_ROOT = 3.0
+"""Root of the additional weight of an exact position in a fit."""
+
+PROJECTION_STEPS, PROJECTION_TOLERANCE = 60, 1e-14
+"""Number of steps that move a fit onto its exact positions, and their tolerance."""
+
+TOLERANCE_SHARE = 0.98
+"""Share of a tolerance that is used; the rest covers rounding and the steps of the drive."""
+
+MIN_BODY_TURN = math.radians(15.0)
+"""Minimum body rotation, radians, in the denominator of the excess rotation, as in
+:mod:`synthesis.verification.body_motion`."""
 
 MIN_SEPARATION = 0.1
 """Minimum separation of distinct sixbars: the largest distance between corresponding joints, in task sizes."""
 
-ATTEMPTS_PER_DESIGN, MIN_ATTEMPTS = 4, 20
-"""Maximum number of verified sixbars: per requested design, and its lower bound."""
+ATTEMPTS_PER_DESIGN, MIN_ATTEMPTS, CONSTRAINED_ATTEMPTS = 4, 20, 150
+"""Maximum number of verified sixbars: per requested design, its lower bound, and that if obstacles, planes or forces
+matter."""
 
-WORKSPACE_ATTEMPTS = 150
-"""Minimum number of verified sixbars if obstacles, planes or forces matter, which the search ignores."""
 
-GRASHOF_CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
-"""Grashof classes in the kernel's numbering."""
+class Candidate(NamedTuple):
+    """A fit that meets the positions, the aims that it satisfies, and its value, the larger the better."""
 
-UNBOUNDED_BOX = np.array([-np.inf, np.inf, -np.inf, np.inf])
+    fit: Fit
+    aims: Aims
+    value: float
 
 
 class SixbarSearch:
     """Search for the sixbars of one problem."""
 
     def __init__(self, problem: MotionProblem, types: tuple[Sixbar, ...]) -> None:
-        self.problem, self.types = problem, types
+        self.problem = problem
         self.task, self.target = make_motion_task(problem), make_target_poses(problem)
-        requested = np.array([make.type in types for make in TOPOLOGIES])
-        limits = _pack_limits(problem, self.task)
-        self.chains = ChainSearch(problem, self.task, self.target, requested, limits)
-        self.branches = BranchSearch(problem, self.task, self.target, requested, limits)
+        self.kinds: dict[Topology, str] = {form: kind for kind in types for form in list_forms(kind, guides=True)}
+        self.limits = Limits(problem, self.task)
+        self.exact: Real = np.all(self.target.exact_mask, axis=1)
+        self.needed = compute_needed_motion(self.task)
+        constraints = problem.constraints
+        # Constraints that the fits do not know reject many linkages: keep more of them.
+        self.is_judged = bool(problem.space is not None or problem.layout is not None or constraints.force_limits)
+        self.descents = 0
 
-    @property
-    def candidate_count(self) -> int:
-        """Number of sixbars examined so far."""
-        return self.chains.weighed + self.branches.descents
-
-    @property
-    def method(self) -> str:
-        """Names of the search methods used."""
-        counts = (self.branches.descents, "held_branches"), (self.chains.weighed, "constrained_chains")
-        return ", ".join(name for count, name in counts if count) or "held_branches"
-
-    def run(self, progress: Progress) -> SixbarCandidates:
-        """Run rounds until there are enough distinct feasible sixbars, or the budget is used up."""
-        rng = np.random.default_rng(self.problem.seed)
-        constraints = self.problem.constraints
-        regions = constraints.fixed_pivot_region, constraints.moving_pivot_region, self.problem.space
-        mixed = (
-            constraints.full_rotation or constraints.grashof != "any" or any(region is not None for region in regions)
+    def build_task(self, aims: Aims, steps: int = SEARCH_STEP_COUNT) -> FitTask:
+        """Return the fit to all positions with some aims."""
+        unit = np.array([self.target.size, self.target.size, 1.0])
+        # Infinite tolerances mark fitted coordinates, which aim at the target.
+        limits = np.where(np.isfinite(self.target.limits), self.target.limits, 0.0)
+        n = len(self.exact)
+        roots = np.full(n, 1.0 / math.sqrt(n))
+        if self.problem.is_least_squares:
+            roots = np.where(self.exact, EXACT_ROOT * roots, roots)
+        targets = build_pose_targets(
+            self.task.points, np.angle(self.task.turns), TOLERANCE_SHARE * limits / unit, roots
         )
-        # A Stephenson II contains no chain, so chains cannot help it.
-        mixed = mixed and len(self.problem.positions) <= MAX_EXACT_POSITIONS and self.types != (UNCLASSED_SIXBAR,)
-        found = SixbarCandidates.make_empty()
-        spent, until, n = 0.0, 1.0, 0
-        while spent < until:
-            # Alternate, because neither search dominates for these constraints.
-            if self.problem.chain is not None or (mixed and n % 2):
-                found, spent = self._select_distinct(found.merge(self.chains.round(rng))), spent + CHAIN_ROUND_SHARE
-            else:
-                sound = bool(np.any(found.values >= 1.0))
-                relaxed = spent >= RELAXATION_START and not sound and n % RELAXATION_PERIOD == 0
-                found = self._select_distinct(found.merge(self.branches.round(rng, relaxed=relaxed)))
-                spent += BRANCH_ROUND_SHARE
-            n += 1
-            sound_ones = int(np.count_nonzero(found.values >= 1.0))
-            # One feasible sixbar shows how hard the problem is: bound the rest of the search by that effort.
-            if sound_ones and until == 1.0:
-                until = min(1.0, (1.0 + EXTENSION_FACTOR) * spent + EXTENSION_SHARE)
-            # At least two rounds are made, so that not all sixbars come from one lucky round.
-            if n >= MIN_ROUNDS and sound_ones >= self.problem.max_designs:
-                break
-            progress(min(spent, 1.0), compose("motion-sixbars-examined", count=self.candidate_count))
-        return found
+        full_turn = self.problem.constraints.full_rotation
+        return FitTask(targets, self.limits.build_packer(aims), full_turn=full_turn, steps=steps, ordered=True)
 
-    def fit(self, progress: Progress) -> SixbarCandidates:
-        """Run rounds until enough feasible sixbars meet all positions or the budget is used; smallest errors first."""
+    def run(self, progress: Progress) -> list[Fit]:
+        """Return linkages that meet all positions, the best first."""
         rng = np.random.default_rng(self.problem.seed)
-        found = SixbarCandidates.make_empty()
-        least, since, n, share = math.inf, 0, 0, 0.0
-        until, enough, nearly = FIT_BUDGET, compute_fit_value(TARGET_ERROR), compute_fit_value(PROMISING_ERROR)
-        while n * BRANCH_ROUND_SHARE < until:
-            relaxed = n * BRANCH_ROUND_SHARE >= RELAXATION_START * FIT_BUDGET and not bool(np.any(found.values >= 1.0))
-            met = self.branches.round(rng, relaxed=relaxed)
-            # Candidates that meet all positions (values of 2 and more) rank before those that miss any.
-            values = np.where(met.values >= 1.0, 1.0 + met.values, met.values)
-            found = self._select_distinct(found.merge(met._replace(values=values)))
-            n += 1
-            if np.count_nonzero(found.values >= 2.0) >= self.problem.max_designs:
-                return found
-            since = 0 if self.branches.min_cost < MIN_COST_RATIO * least else since + 1
-            least = min(least, self.branches.min_cost)
-            # The pools no longer improve: converge what they contain and start afresh.
-            if since >= MAX_STALE_ROUNDS or n * BRANCH_ROUND_SHARE >= until:
-                found = self._select_distinct(found.merge(self.branches.fit_pools()))
-                if np.count_nonzero(found.values >= enough) >= self.problem.max_designs:
-                    return found
-                least, since = math.inf, 0
-                # A nearly exact fit suggests that an exact solution exists, so search on.
-                if np.any(found.values >= nearly):
-                    until = EXTENDED_FIT_BUDGET
+        aims = self.limits.aims, self.limits.relaxed_aims
+        tasks, pools = tuple(map(self.build_task, aims)), [list[Fit](), list[Fit]()]
+        found: list[Candidate] = []
+        enough = MIN_MET_CONSTRAINED if self.is_judged else MIN_MET
+        enough = max(enough, MET_PER_DESIGN * self.problem.max_designs)
+        rounds, number = MAX_ROUNDS, 0
+        while number < rounds and (number < MIN_ROUNDS or len(found) < enough):
+            relaxed = number >= RELAXATION_START * MAX_ROUNDS and not found and number % RELAXATION_PERIOD == 0
+            met, pools[relaxed] = self._run_round(tasks[relaxed], pools[relaxed], rng)
+            number += 1
+            if met and not found and not relaxed:
+                rounds = min(rounds, EXTENSION_FACTOR * number + MIN_ROUNDS)
+            found += [Candidate(fit, aims[relaxed], 0.0) for fit in met]
+            found = self._select_distinct(found, enough)
+            progress(number / MAX_ROUNDS, compose("motion-sixbars-examined", count=self.descents))
+        return [one.fit for one in self._improve(found, rng)]
+
+    def _run_round(self, task: FitTask, pool: list[Fit], rng: np.random.Generator) -> tuple[list[Fit], list[Fit]]:
+        """Run a round on a pool; return the linkages that meet the positions, and the new pool."""
+        starts = self._draw_starts(task, rng)
+        fits = descend_softly(starts, task, FIRST_STEPS, COARSE_TOLERANCE, SOFT_WEIGHT)
+        met, pool = _take_met([*pool, *fits])
+        for _ in range(GENERATION_COUNT):
+            pool = hop_basins(
+                pool[:POOL_SIZE], task, HOPS, HOP_STEPS, rng, HALVINGS, SOFT_WEIGHT, tolerance=COARSE_TOLERANCE,
+                goal=MET_COST, rank=HOP_RANK, size=HOP_SIZE, perturb=perturb_evenly,
+            )  # fmt: skip
+            self.descents += HOPS
+            more, pool = _take_met(pool)
+            # Others near one that meets the positions would lead to the same one.
+            pool = [fit for fit in pool if not any(self._is_near(fit, other) for other in more)]
+            met += more
+        return met, pool
+
+    def _is_near(self, fit: Fit, other: Fit) -> bool:
+        """Return whether two linkages are the same but for small changes."""
+        if fit.topology is not other.topology:
+            return False
+        return bool(
+            np.abs(fit.x[: 2 * len(fit.topology.nodes)] - other.x[: 2 * len(fit.topology.nodes)]).max() < MIN_SEPARATION
+        )
+
+    def _draw_starts(self, task: FitTask, rng: np.random.Generator) -> list[Fit]:
+        weights = [weight for kind in dict.fromkeys(self.kinds.values()) for weight in SAMPLING_WEIGHTS[kind]]
+        starts: list[Fit] = []
+        for topology, weight in zip(self.kinds, weights, strict=True):
+            starts += draw_starts(topology, task, math.ceil(STARTS_PER_ROUND * weight / sum(weights)), rng)
+        self.descents += len(starts)
+        return starts
+
+    def _select_distinct(self, found: Sequence[Candidate], most: int) -> list[Candidate]:
+        """Return the best distinct candidates."""
+        evaluated = map(self._evaluate, found)
+        ordered = sorted((one for one in evaluated if one.value > 0.0), key=lambda one: -one.value)
+        if not ordered:
+            return []
+        chosen = select_distinct([self._list_joints(one.fit) for one in ordered], most, MIN_SEPARATION)
+        return [ordered[k] for k in chosen]
+
+    def _list_joints(self, fit: Fit) -> list[complex]:
+        """Return the joints of a fit, and a place of its topology far from those of all others."""
+        joints = [complex(*fit.x[2 * node : 2 * node + 2]) for node in fit.topology.pin_names]
+        return [*joints, 1e6 * list(self.kinds).index(fit.topology)]
+
+    def _evaluate(self, one: Candidate) -> Candidate:
+        """Return a candidate with its value, the quality of its motion."""
+        if one.value:
+            return one
+        fit, steps = one.fit, np.linspace(0.0, one.fit.inputs[-1], FINAL_STEP_COUNT)
+        topology, nodes = fit.topology, fit.topology.nodes
+        places, cosines = np.empty((len(steps), len(nodes), 2)), np.zeros((len(steps), len(nodes)))
+        trace_linkage(nodes, fit.x, steps, places, cosines)
+        z = places[..., 0] + 1j * places[..., 1]
+        flattest = np.abs(cosines).max()
+        # A toggle between the steps of the search.
+        if not flattest < 1.0:
+            return one._replace(value=-1.0)
+        if topology.triad:
+            flattest = max(abs(find_min_slant(*row[list(topology.triad)])[0]) for row in z)
+        point = z[:, topology.point]
+        heading = np.unwrap(np.angle(z[:, topology.heading] - point))
+        first, second = topology.get_direction("input")
+        turned = np.unwrap(np.angle(z[:, second] - z[:, first]))
+        # Denominators have a floor, so that short motions do not exaggerate the excess.
+        excess = max(
+            (np.abs(np.diff(point)).sum() - self.needed[0]) / max(self.needed[0], 1.0),
+            (np.abs(np.diff(heading)).sum() - self.needed[1]) / max(self.needed[1], MIN_BODY_TURN),
+            0.0,
+        )
+        pins, arms = (np.abs(np.diff(z[0][pairs], axis=1)) for pairs in (topology.pairs, topology.arms))
+        sine = math.sqrt(max(1.0 - float(flattest) ** 2, 0.0))
+        quality = compute_quality(sine, float(max(pins.max(), arms.max())), float(pins.max() / pins.min()))
+        return one._replace(value=quality * float(compute_ease(abs(turned[-1] - turned[0]), float(excess))))
+
+    def _improve(self, found: Sequence[Candidate], rng: np.random.Generator) -> list[Candidate]:
+        """Return the candidates after hops that return to the positions, for a larger value; the best first."""
+        best, spreads = list(found), [IMPROVEMENT_HOP] * len(found)
+        for number in range(IMPROVEMENT_COUNT):
+            starts: dict[Aims, list[int]] = {}
+            for k, one in enumerate(best):
+                # Every third hop keeps the aims, so that the input's rotation and the body's path may improve instead.
+                starts.setdefault(one.aims.tighten() if number % 3 else one.aims, []).append(k)
+            for aims, rows in starts.items():
+                copies = [perturb_evenly(best[k].fit, spreads[k], rng) for k in rows]
+                ends = descend_softly(
+                    copies, self.build_task(aims, STEP_COUNT), HOP_STEPS, COARSE_TOLERANCE, SOFT_WEIGHT
+                )
+                self.descents += len(rows)
+                for k, end in zip(rows, ends, strict=True):
+                    new = self._evaluate(Candidate(end, aims, 0.0)) if end.cost < MET_COST else best[k]
+                    if new.value > best[k].value:
+                        best[k] = new
+                    else:
+                        # The next hop stays nearer.
+                        spreads[k] *= IMPROVEMENT_DECAY
+        return sorted(best, key=lambda one: -one.value)
+
+    def fit(self, progress: Progress) -> list[Fit]:
+        """Return linkages that miss the positions least, the nearest first."""
+        rng = np.random.default_rng(self.problem.seed)
+        tasks = tuple(map(self.build_task, (self.limits.aims, self.limits.relaxed_aims)))
+        found: list[Fit] = []
+        pool: list[Fit] = []
+        stale, least, most, share = 0, math.inf, FIT_ROUNDS, 0.0
+        number = 0
+        while number < most:
+            task = tasks[0]
+            met, pool = self._run_round(task, pool, rng)
+            number += 1
+            found += met
+            if sum(fit.cost <= 0.5 * TARGET_ERROR**2 for fit in [*found, *pool]) >= self.problem.max_designs:
+                break
+            stale = 0 if pool and pool[0].cost < MIN_COST_RATIO * least else stale + 1
+            least = min(least, pool[0].cost) if pool else least
+            if stale * GENERATION_COUNT >= STALE_GENERATIONS:
+                found += self.converge_fits(pool)
+                pool, stale, least = [], 0, math.inf
+                if any(fit.cost <= 0.5 * PROMISING_ERROR**2 for fit in found):
+                    most = EXTENSION * FIT_ROUNDS
             # The budget may be extended, but reported progress must not decrease.
-            share = max(share, min(n * BRANCH_ROUND_SHARE / until, 1.0))
-            progress(share, compose("motion-sixbars-examined", count=self.candidate_count))
-        return found
+            share = max(share, number / most)
+            progress(share, compose("motion-sixbars-examined", count=self.descents))
+        return sort_fits([*found, *self.converge_fits(pool)])
 
-    def _select_distinct(self, found: SixbarCandidates) -> SixbarCandidates:
-        """Select the best distinct candidates, feasible ones first."""
-        ordered = found.select_rows(np.argsort(-found.values, kind="stable"))
-        # A large offset per topology makes candidates of different topologies distinct.
-        apart = np.concatenate([ordered.joints, 1e6 * ordered.makes[:, None].astype(np.complex128)], axis=1)
-        most = max(ATTEMPTS_PER_DESIGN * self.problem.max_designs, MIN_ATTEMPTS)
-        if self.problem.space is not None or self.problem.constraints.force_limits or self.problem.layout is not None:
-            most = max(most, WORKSPACE_ATTEMPTS)
-        return ordered.select_rows(np.array(select_distinct(apart, most, MIN_SEPARATION), np.int64))
+    def converge_fits(self, pool: Sequence[Fit]) -> list[Fit]:
+        """Return the fits of a pool at their least squares under enforced constraints, on their exact positions."""
+        task = self.build_task(self.limits.bare_aims, FINAL_STEP_COUNT)
+        fits = descend_softly(pool, task, FINAL_STEPS, FINE_TOLERANCE, SOFT_WEIGHT)
+        # Positions that can be met at the limits are met by now; the others keep a small violation.
+        met, missed = _take_met(fits)
+        ends = [*met, *sort_fits(fit_constrained(missed, task))]
+        return self._project_on_exact(ends, task) if self.exact.any() else ends
 
-    def mechanism(self, found: SixbarCandidates, n: int) -> SixbarMechanism:
-        """Build a sixbar of the search in the problem's coordinates."""
-        make, row = TOPOLOGIES[found.makes[n]], found.joints[n]
-        joints = {name: self.task.to_problem(complex(row[k])) for name, k in make.joints.items()}
-        joints["P"] = self.task.to_problem(complex(found.bodies[n]))
-        # A body angle within a tolerance differs from the requested one.
+    def _project_on_exact(self, fits: Sequence[Fit], task: FitTask) -> list[Fit]:
+        """Move fits onto their exact positions, which a larger weight alone misses by a little."""
+        chosen = np.flatnonzero(self.exact)
+        targets = task.targets.reshape(-1, 2, TARGET_SIZE)[chosen].reshape(-1, TARGET_SIZE)
+        targets[:, SLOT] = np.repeat(np.arange(len(chosen)), 2)
+        # Without limits, because the step is tiny; the verification measures them again.
+        exact_task = replace(task, targets=targets, pack_limits=pack_unlimited, steps=0, ordered=False)
+        parts = [fit._replace(inputs=fit.inputs[chosen]) for fit in fits]
+        ends = descend_softly(parts, exact_task, PROJECTION_STEPS, PROJECTION_TOLERANCE)
+        moved = [
+            settle_inputs(fit._replace(x=end.x), task)
+            for fit, end in zip(fits, ends, strict=True)
+            if end.cost < MET_COST
+        ]
+        return sort_fits(moved)
+
+    def build_mechanism(self, fit: Fit) -> SixbarMechanism | EightbarMechanism | None:
+        """Return the linkage of a fit in the problem's coordinates."""
         angle = None
+        # A body angle within a tolerance differs from the requested one.
         if not self.target.exact_mask[0, 2]:
-            angle = self.problem.positions[0].angle + math.degrees(float(found.stands[n]))
-        return build_sixbar(make.type, joints, make.links, body_angle=angle)
+            point, heading = (fit.topology.get_source(node) for node in (fit.topology.point, fit.topology.heading))
+            along = fit.x[2 * heading : 2 * heading + 2] - fit.x[2 * point : 2 * point + 2]
+            angle = self.problem.positions[0].angle + math.degrees(math.atan2(along[1], along[0]))
+        return build_fitted_linkage(self.kinds[fit.topology], fit, self.task.origin, self.task.size, angle)
+
+    def list_mechanisms(self, fits: Sequence[Fit]) -> list[SixbarMechanism | EightbarMechanism]:
+        """Return the linkages of distinct fits, in the problem's coordinates, as many as are worth driving."""
+        most = max(ATTEMPTS_PER_DESIGN * self.problem.max_designs, MIN_ATTEMPTS)
+        most = max(most, CONSTRAINED_ATTEMPTS) if self.is_judged else most
+        chosen = select_distinct([self._list_joints(fit) for fit in fits], most, MIN_SEPARATION) if fits else []
+        made = [self.build_mechanism(fits[k]) for k in chosen]
+        return [mechanism for mechanism in made if mechanism is not None]
+
+
+def _take_met(fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
+    """Return the fits that meet the positions, and the others, the nearest first."""
+    ordered = sort_fits(fits)
+    met = sum(fit.cost < MET_COST for fit in ordered)
+    return ordered[:met], ordered[met:]
 
 
 def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: Progress) -> MotionResult:
     """Solve for sixbars of the given types that carry the body through two to sixty positions."""
+    if problem.chain is not None:
+        return solve_by_chains(problem, types, progress)
     search = SixbarSearch(problem, types)
     looked = scale_progress(progress, 0.0, 0.9)
-    found = search.fit(looked) if problem.is_least_squares else search.run(looked)
+    fits = search.fit(looked) if problem.is_least_squares else search.run(looked)
     sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
-    progress(0.9, compose("motion-verifying-best-sixbars", count=search.candidate_count))
-    # Feasible ones come first. The others may violate only default limits, so the verification decides about them.
-    rows = np.flatnonzero(found.values >= 0.0)
+    progress(0.9, compose("motion-verifying-best-sixbars", count=search.descents))
+    mechanisms = search.list_mechanisms(fits)
 
-    def verify_sixbar(n: int) -> LinkageDesign | None:
-        return verify(problem, search.mechanism(found, n), search.target)
+    def verify_sixbar(mechanism: SixbarMechanism | EightbarMechanism) -> LinkageDesign | None:
+        return verify(problem, mechanism, search.target)
 
-    tried = sifting.verify_candidates(rows.tolist(), verify_sixbar, enough=problem.max_designs)
+    tried = sifting.verify_candidates(mechanisms, verify_sixbar, enough=problem.max_designs)
     # All others were examined, but not verified.
-    sifting.reject("unsound", search.candidate_count - tried)
+    sifting.reject("unsound", max(search.descents - tried, 0))
     progress(1.0, compose("motion-verified"))
     return MotionResult(
         designs=sifting.select_designs(make_ranking(problem)),
-        search=sifting.build_search(search.method),
-        summary=_describe_result(sifting, search),
+        search=sifting.build_search("sixbar_descents"),
+        summary=describe_sixbars(problem, sifting, compose("motion-sixbars-fitted", count=search.descents)),
     )
-
-
-def _pack_limits(problem: MotionProblem, task: MotionTask) -> Real:
-    """Pack the limits of a problem for the kernel, as :data:`~synthesis.kinds.motion.sixbar.candidate_value.LIMITS`."""
-    constraints = problem.constraints
-    angle = (
-        SOUND_TRANSMISSION_ANGLE
-        if constraints.min_transmission_angle is None
-        # Below 90°, where the cosine would demand perfection.
-        else min(constraints.min_transmission_angle + ANGLE_MARGIN, 89.9)
-    )
-    lengths = constraints.link_length
-    shortest = 0.0 if lengths is None else lengths.min / task.size
-    longest = np.inf if lengths is None or lengths.max is None else lengths.max / task.size
-    ratio = MAX_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio
-    # A given chain sets the scale of the mechanism; the default limit must not exclude it.
-    reach = max(MAX_REACH, CHAIN_REACH_FACTOR * problem.chain_size / task.size)
-    room = None if problem.space is None else problem.space.shrink_box_for_joints()
-    limits = np.empty(candidate_value.LIMITS.size)
-    limits[candidate_value.MIN_SINE] = math.sin(math.radians(angle))
-    limits[candidate_value.MAX_REACH], limits[candidate_value.MAX_RATIO] = reach, ratio
-    limits[candidate_value.MIN_LENGTH], limits[candidate_value.MAX_LENGTH] = shortest, longest
-    limits[candidate_value.GRASHOF_CLASS] = GRASHOF_CLASSES.index(constraints.grashof)
-    limits[candidate_value.FULL_TURN] = constraints.full_rotation
-    limits[candidate_value.FIXED_BOX] = _make_box(constraints.fixed_pivot_region, task)
-    limits[candidate_value.MOVING_BOX] = _make_box(constraints.moving_pivot_region, task)
-    limits[candidate_value.JOINT_BOX] = UNBOUNDED_BOX if room is None else _scale_box(room, task)
-    return limits
-
-
-def _make_box(region: Region | None, task: MotionTask) -> Real:
-    return UNBOUNDED_BOX if region is None else _scale_box((*region.x, *region.y), task)
-
-
-def _scale_box(sides: tuple[float, float, float, float], task: MotionTask) -> Real:
-    """Convert a box (x min, x max, y min, y max) to task coordinates."""
-    left, right, low, high = sides
-    corners = task.to_task(complex(left, low)), task.to_task(complex(right, high))
-    return np.array([corners[0].real, corners[1].real, corners[0].imag, corners[1].imag])
-
-
-def _describe_result(sifting: CandidateLog[LinkageDesign], search: SixbarSearch) -> str:
-    effort = _describe_effort(search)
-    if not sifting.passed:
-        return join_messages(
-            [
-                compose("motion-no-sixbar-feasible", effort=effort),
-                sifting.describe_reasons().strip(),
-                compose("motion-unproven"),
-            ]
-        )
-    found = [compose("motion-sixbars-verified", effort=effort, designs=len(sifting.passed))]
-    if search.problem.is_least_squares:
-        share = 100.0 * min(map(get_rms_error, sifting.passed))
-        found.append(compose("motion-best-error", error=f"{share:.3g}"))
-    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
-    return join_messages([*found, compose("motion-best-transmission-angle", angle=f"{best:.1f}")])
-
-
-def _describe_effort(search: SixbarSearch) -> str:
-    """Return the beginning of a sentence: the numbers of sixbars that each method examined."""
-    descents, weighed = search.branches.descents, search.chains.weighed
-    fitted = compose("motion-sixbars-fitted", count=descents)
-    from_chains = compose("motion-sixbars-from-chains", count=weighed)
-    if descents and weighed:
-        return compose("motion-both-sixbar-searches", first=fitted, second=from_chains)
-    if descents or weighed:
-        return fitted if descents else from_chains
-    # Only Stephenson II sixbars need a crank before they can be examined.
-    return compose("motion-stephenson-2-without-crank")

@@ -1,4 +1,4 @@
-"""Topologies of sixbars that carry a body: type, links, and the indices of joints in the kernel's rows."""
+"""Topologies of sixbars that contain a chain of three links: types, links, and indices of joints in the kernel."""
 
 from __future__ import annotations
 
@@ -53,25 +53,6 @@ TOPOLOGIES = (
         _FOURBAR | {"D": Q1, "C": Q2, "E": J},
         {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "coupler": ("A", "B"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
-    ),
-    Topology(
-        "watt_1",
-        _FOURBAR | {"D": Q1, "C": Q2, "E": J},
-        {"ground": ("O2", "O4"), "input": ("O2", "A", "D"), "coupler": ("A", "B", "C"), "output": ("O4", "B"),
-         "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
-    ),
-    Topology(
-        "watt_1",
-        _FOURBAR | {"D": Q1, "C": Q2, "E": J},
-        {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
-         "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
-    ),
-    Topology(
-        "stephenson_2",
-        {"A": O2, "B": A, "D": B, "C": O4, "E": Q1, "O2": Q2,
-         "O4": J},
-        {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "link_3": ("A", "B"), "link_4": ("B", "D", "E", "P"),
-         "link_5": ("C", "D"), "output": ("O4", "E")},
     ),
 )  # fmt: skip
 """Topologies in the order of their kernel numbers

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Complex
+from kinematics.arrays import Complex, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices, to_complete_point
 from synthesis.model.problem import PartialPoint
@@ -75,3 +75,9 @@ def make_motion_task(problem: MotionProblem) -> MotionTask:
     size = problem.task_size
     turns = np.exp(1j * np.array(problem.turns))
     return MotionTask((points - points[0]) / size, turns, complex(points[0]), size)
+
+
+def compute_needed_motion(task: MotionTask) -> Real:
+    """Return P's path length (task sizes) and the body's rotation (radians) that the target positions need."""
+    turns = task.turns[1:] / task.turns[:-1]
+    return np.array([np.abs(np.diff(task.points)).sum(), np.abs(np.angle(turns)).sum()])

@@ -36,6 +36,7 @@ from synthesis.fit.linkage.descent import (
     hop_basins,
     sort_fits,
 )
+from synthesis.fit.linkage.mechanism import build_fitted_linkage
 from synthesis.fit.linkage.residuals import ROOT, X, Y
 from synthesis.fit.linkage.topology import Topology, list_forms
 from synthesis.kinds.path.curve.fits import get_thinning
@@ -43,7 +44,6 @@ from synthesis.kinds.path.curve.stance_fit import pack_target_stance
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.multiloop.limits import CLASS_LINKS, build_packer
-from synthesis.kinds.path.multiloop.mechanism import build_fitted_linkage
 from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.stance import MARGIN_COUNT, compute_linkage_stance_rows

@@ -296,7 +296,7 @@ def compute_linkage_stance_rows(
     if m < 0:
         return -1
     state[:n], state[n + MARGIN_COUNT :] = inner[:n], inner[n:]
-    nodes, _, _, _, _ = unpack_table(own)
+    nodes = unpack_table(own)[0]
     count, point, unknowns = len(nodes), int(own[POINT_NODE]), len(x)
     constants, joints, cosines = np.empty((count, CONSTANT_COUNT)), np.empty((count, 2)), np.zeros(count)
     slopes, by_point = np.zeros((count, 2, 1 + 2 * count)), np.zeros(unknowns + 1, np.complex128)

@@ -20,7 +20,7 @@ PAGE = Path(__file__).parents[4] / "docs" / "development" / "adding-a-mechanism.
 @pytest.mark.slow
 def test_one_row_adds_a_variant_that_paths_are_solved_with(monkeypatch) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    monkeypatch.setattr(topology, "SIXBAR_FORMS", dict(topology.SIXBAR_FORMS))
+    monkeypatch.setattr(topology, "SIXBAR_DYADS", dict(topology.SIXBAR_DYADS))
     topology.list_forms.cache_clear()
     exec(code, {})  # the page's own lines, which import the patched table
     try:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from synthesis.fit.linkage.descent import build_pose_targets
 from synthesis.fit.linkage.margins import EQUATION_COUNT, count_margins
 from synthesis.fit.linkage.residuals import (
     FIRST_NODE,
@@ -29,17 +30,20 @@ from synthesis.fit.linkage.setting import (
     FAMILY,
     FULL_TURN,
     GIVEN_PIVOTS,
+    GRASHOF,
     INPUT_BOX,
     LINKS,
     MOVING_BOX,
+    ORDER,
     PIVOT_BOX,
     RATIO,
+    REACH,
     STEPS,
     WIDTH,
     WORKSPACE_BOX,
     pack_topology,
 )
-from synthesis.fit.linkage.topology import Topology
+from synthesis.fit.linkage.topology import Topology, list_forms
 from tests.support.synthesis.random_linkages import TOPOLOGIES, draw_linkage, trace_nodes
 
 POINT_COUNT, STEP = 16, 1e-6
@@ -128,6 +132,33 @@ def test_gradient_of_poses_at_given_and_free_inputs(free: bool) -> None:
     setting = build_setting(topology, z, robust=False, full=True)
     setting[BACK] = 0.0
     assert_gradient(z, targets, setting, inputs)
+
+
+@pytest.mark.parametrize("grashof", [1.0, -1.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("kind", "number"), [("watt_1", 1), ("stephenson_1", 0), ("stephenson_2", 1)])
+def test_gradient_of_ordered_poses_with_tolerances(kind: str, number: int, way: float, grashof: float) -> None:
+    """Some coordinates are within their tolerances; the steps of the inputs are unknowns."""
+    topology, inputs = list_forms(kind, guides=True)[number], way * np.array([0.0, 0.1, 0.25, 0.3, 0.5])
+    z = draw_linkage(topology)
+    places = trace_nodes(topology, z, inputs)
+    points = places[:, topology.point] @ [1.0, 1.0j]
+    headings = np.angle(places[:, topology.heading] @ [1.0, 1.0j] - points)
+    rng = np.random.default_rng(0)
+    off = rng.normal(size=(3, 5)) * 0.03
+    tolerances = rng.choice([0.0, 0.01, 0.1], (5, 3))
+    targets = build_pose_targets(points + off[0] + 1j * off[1], headings + off[2], tolerances, np.full(5, 0.7))
+    targets[::2, FIRST_NODE] = targets[1::2, FIRST_NODE] = topology.point
+    targets[1::2, SECOND_NODE] = topology.heading
+    setting = build_setting(topology, z, robust=False, full=False)
+    setting[BACK], setting[ORDER], setting[REACH], setting[GRASHOF] = (
+        0.0,
+        1.0,
+        0.2,
+        grashof if topology.families else 0.0,
+    )
+    x = np.concatenate([z, np.log(np.abs(np.diff(inputs)))])
+    assert_gradient(x, targets, setting, inputs)
 
 
 def test_exact_targets_leave_no_residual() -> None:

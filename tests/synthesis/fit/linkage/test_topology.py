@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from synthesis.fit.linkage.topology import DYAD, SIXBAR_FORMS, build_topology, list_chains
+from synthesis.fit.linkage.topology import DYAD, build_topology, list_chains
+from tests.support.synthesis.random_linkages import SIXBAR_FORMS
 
 
 @pytest.mark.parametrize(("dyads", "count"), [(1, 1), (2, 8), (3, 88)])

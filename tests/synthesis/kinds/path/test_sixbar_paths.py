@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar.drive import drive
+from synthesis.fit.linkage.mechanism import build_fitted_linkage
 from synthesis.fit.linkage.setting import INPUT_BOX, PIVOT_BOX, WORKSPACE_BOX
-from synthesis.fit.linkage.topology import SIXBAR_FORMS, list_forms
+from synthesis.fit.linkage.topology import list_forms
 from synthesis.kinds.path import type_selection
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.fallback import solve_exactly_or_fit
 from synthesis.kinds.path.multiloop.limits import WORKSPACE_MARGIN, build_packer
-from synthesis.kinds.path.multiloop.mechanism import build_fitted_linkage
 from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.task.ranking import build_ordering
@@ -26,7 +26,7 @@ from synthesis.registry import parse_problem
 from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.oracles.loops import Loops
 from tests.support.answers import solve
-from tests.support.synthesis.random_linkages import trace_nodes
+from tests.support.synthesis.random_linkages import SIXBAR_FORMS, trace_nodes
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
@@ -53,7 +53,7 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
     room = {"box": [[-120.0, -110.0], [140.0, 150.0]], "link_width": 4.0, "obstacles": [FAR_AWAY]}
     problem = parse_problem(TASK | {"space": room | {"clearance": clearance}})
     centre, size = 10.0 + 5.0j, 80.0
-    setting = build_packer(problem, centre, size, 20.0, 10.0)(SIXBAR_FORMS["stephenson_3"][0])
+    setting = build_packer(problem, centre, size, 20.0, 10.0)(list_forms("stephenson_3")[0])
     for pivots in (INPUT_BOX, PIVOT_BOX):
         assert setting[pivots] == pytest.approx(setting[WORKSPACE_BOX])
     sides = (

@@ -19,7 +19,7 @@ from synthesis.fit.linkage.descent import build_point_targets
 from synthesis.fit.linkage.margins import count_margins
 from synthesis.fit.linkage.residuals import FIRST_NODE, count_rows
 from synthesis.fit.linkage.setting import STEPS
-from synthesis.fit.linkage.topology import SIXBAR_FORMS
+from synthesis.fit.linkage.topology import list_forms
 from synthesis.kinds.path.multiloop.limits import build_packer
 from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
@@ -185,7 +185,7 @@ def test_derivatives_of_a_fourbar_whose_stance_goes_on_past_the_last_point() -> 
 
 
 def test_derivatives_of_a_sixbar_whose_stance_goes_on_past_the_last_point() -> None:
-    topology = SIXBAR_FORMS["stephenson_3"][0]
+    topology = list_forms("stephenson_3")[0]
     around = np.exp(1j * np.arange(48) * math.tau / 48) * (1.0 + 0.1 * np.cos(np.arange(48)))
     fit = find_similar_linkages(topology, around, True, 4096, 2, np.random.default_rng(0))[0]
     own = build_packer(CIRCLE, 0j, 1.0, 20.0, 10.0)(topology).copy()
