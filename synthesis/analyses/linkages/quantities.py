@@ -20,6 +20,7 @@ from kinematics.linkage.planar.limits import find_limit_positions, find_referenc
 from kinematics.linkage.planar.link_points import link_point
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.planar.program import build_program
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from kinematics.message import compose
 from synthesis.analyses.linkages.cycle import list_branches
 from synthesis.analyses.linkages.fourbar import extract_fourbar
@@ -71,12 +72,30 @@ def analyze_motion(
         "slides": {name: _describe_travel(jet) for name, jet in motion.slides.items()},
         "transmission_angle": [math.nan] * len(at) if least is None else _list_values(least),
         "transmission_angles": transmission,
+        "min_transmission_angle": _find_min_transmission_angle(mechanism, inputs, motion),
         "torque_ratio": _compute_ratios(paced, paced.angles, _list_grounded_links(mechanism)),
         "force_ratio": _compute_ratios(paced, paced.slides, _list_output_slides(mechanism)),
         "instant_centers": _list_instant_centers(mechanism, paced) if len(at) == 1 else {},
         "classification": _classify_linkage(mechanism),
         **_describe_circuits(mechanism, tracked, _describe_undefined(mechanism, sines)),
     }
+
+
+def _find_min_transmission_angle(mechanism: Mechanism, inputs: Real, motion: MechanismMotion) -> float:
+    """Find the minimum transmission angle between the first and the last input, degrees; NaN if there is none.
+
+    It is the measure of the metrics and checks of designs: 0 if the motion reaches a toggle.
+    """
+    if not motion.sines:
+        return math.nan
+    if len(inputs) == 1:
+        sine = np.abs(np.stack(list(motion.sines.values()))).min()
+        return math.degrees(math.asin(min(float(sine), 1.0)))
+    # A motion over time may turn back and repeat inputs.
+    low, high = float(inputs.min()), float(inputs.max())
+    grid = np.linspace(low, high, max(len(inputs), GRID_SIZE)) if low < high else np.array([low, low])
+    angles = find_min_transmission_angles(lambda at: drive(mechanism, at, order=0), grid)
+    return math.degrees(min(angles.values()))
 
 
 def _list_values(values: Real) -> list[float]:
