@@ -78,6 +78,7 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
     if isinstance(problem, LinkageProblem):
         result = _finish_linkages(problem, result, kind)
     told(1.0, compose("results-verified"))
+    result = result.model_copy(update={"summary": append_remark(result.summary, _describe_listed(problem, result))})
     return result.model_copy(update={"messages": list_messages(result)})
 
 
@@ -131,6 +132,17 @@ def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation
             "summary": compose("synthesis-designs-without-constraints", count=count),
         }
     )
+
+
+def _describe_listed(problem: ProblemBase, result: AnyResult) -> str:
+    """Return a sentence on the number of designs that are listed; empty if all that passed are."""
+    # Rounding to a grid drops designs, which the summary says already.
+    if isinstance(problem, LinkageProblem) and problem.manufacture is not None and problem.manufacture.is_gridded:
+        return ""
+    listed = sum(design.verification.passed for design in result.designs)
+    if not 0 < listed < result.search.accepted:
+        return ""
+    return compose("synthesis-designs-listed", listed=listed, count=result.search.accepted)
 
 
 def _describe_overlap(problem: ProblemBase, miss: AnyNearestMiss | None) -> str:
