@@ -55,14 +55,14 @@ def measure_penetration(mechanism: Mechanism, parts: Sequence[Part], pairs: Pair
     scene = Scene(mechanism, parts, pairs)
     inputs = np.linspace(low, high, SAMPLE_COUNT)
     depths = np.stack([_measure_depths(scene, parts, pair, inputs) for pair in range(len(pairs))])
-    pair, sample = np.unravel_index(int(depths.argmax()), depths.shape)
+    pair, sample = divmod(int(depths.argmax()), SAMPLE_COUNT)
     deepest = float(depths[pair, sample])
     if deepest == 0.0:
         return 0.0
     left, right = inputs[max(sample - 1, 0)], inputs[min(sample + 1, SAMPLE_COUNT - 1)]
     for _ in range(NARROWING_STEPS):
         inside = np.linspace(left, right, SECTION_COUNT + 1)
-        found = _measure_depths(scene, parts, int(pair), inside)
+        found = _measure_depths(scene, parts, pair, inside)
         peak = int(found.argmax())
         deepest = max(deepest, float(found[peak]))
         left, right = inside[max(peak - 1, 0)], inside[min(peak + 1, SECTION_COUNT)]

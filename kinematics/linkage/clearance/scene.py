@@ -160,11 +160,11 @@ class Scene:
         pose, link = self._evaluate_pose(inputs), self._links[part]
         shift = self._compute_shifts(pose)[link][:, None]
         moved = pose.turn[link][:, None] * ((points - self._origin) / self.size) + shift
-        return np.where(pose.valid[:, None], self._origin + self.size * moved, np.nan)
+        return np.asarray(np.where(pose.valid[:, None], self._origin + self.size * moved, np.nan))
 
     def _compute_shifts(self, pose: _Pose) -> Complex:
         """Compute the displacements (links, n) that follow the rotations of links about the origin."""
-        shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
+        shift = np.asarray(pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None])
         # The ground does not move: remove the rounding errors of the formula.
         shift[0] = 0.0
         return shift

@@ -181,7 +181,7 @@ def _check_motion(problem: MotionProblem, target: TargetPoses, driven: DrivenLin
 
 def _describe_fitted_positions(problem: MotionProblem, target: TargetPoses, driven: DrivenLinkage) -> str | None:
     """Return a sentence on the positions that may be missed; None if all are exact."""
-    exact = target.exact_mask.all(axis=-1)
+    exact = np.asarray(target.exact_mask.all(axis=-1))
     if exact.all():
         return None
     offsets = driven.offsets[~exact]
