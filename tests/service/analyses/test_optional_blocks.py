@@ -30,13 +30,17 @@ WITHOUT_COUPLER_POINT = {
         "input_link": "input",
     },
 }
+SHARES = 4
+"""Number of shares of the blocks, one for each case."""
+
 BODIES = [*analysis_corpus([]), {"mechanism": WITHOUT_COUPLER_POINT}]
 
 
 @pytest.mark.parametrize("body", BODIES, ids=[f"{n} {body['mechanism']['type']}" for n, body in enumerate(BODIES)])
-def test_every_optional_block_is_answered_or_refused_at_a_field(body):
+@pytest.mark.parametrize("share", range(SHARES))
+def test_every_optional_block_is_answered_or_refused_at_a_field(body, share):
     known = get_family(body["mechanism"]).request.model_fields
-    for block in (*BLOCKS, *FURTHER_BLOCKS):
+    for block in (*BLOCKS, *FURTHER_BLOCKS)[share::SHARES]:
         # The longest motions take the time of all others together.
         if not known.keys() >= block.keys() or block.get("motion", {}).get("steps") == 9_999:
             continue
