@@ -36,8 +36,20 @@ SHARES = 4
 BODIES = [*analysis_corpus([]), {"mechanism": WITHOUT_COUPLER_POINT}]
 
 
-@pytest.mark.parametrize("body", BODIES, ids=[f"{n} {body['mechanism']['type']}" for n, body in enumerate(BODIES)])
-@pytest.mark.parametrize("share", range(SHARES))
+CASES = [
+    pytest.param(
+        body,
+        share,
+        id=f"{n} {body['mechanism']['type']}, share {share}",
+        # The planes of this type take most of a second.
+        marks=[pytest.mark.slow] if (body["mechanism"]["type"], share) == ("crank_shaper", 0) else [],
+    )
+    for n, body in enumerate(BODIES)
+    for share in range(SHARES)
+]
+
+
+@pytest.mark.parametrize(("body", "share"), CASES)
 def test_every_optional_block_is_answered_or_refused_at_a_field(body, share):
     known = get_family(body["mechanism"]).request.model_fields
     for block in (*BLOCKS, *FURTHER_BLOCKS)[share::SHARES]:
