@@ -6,7 +6,8 @@ import json
 from collections.abc import Mapping
 from typing import cast
 
-from kinematics.message import compose, join_messages
+from kinematics.message import join_messages
+from service.error_messages import explain_kind
 from service.requests import Faults, check_consistency, check_fields
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import ProblemBase
@@ -46,7 +47,7 @@ def check_problem(problem: Problem) -> ProblemBase:
     statement = build_statement(problem)
     kind = statement.get("kind")
     if kind not in KINDS:
-        raise InvalidProblem({"/kind": compose("service-kind-unknown", names=", ".join(KINDS))})
+        raise InvalidProblem({"/kind": explain_kind(kind, KINDS)})
     read, faults = check_fields(kind, statement)
     # Only valid fields can be checked for contradictions.
     faults = faults or check_consistency(read)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from difflib import get_close_matches
-from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
-
-from pydantic import BaseModel
+from typing import Any
 
 from kinematics.message import compose, find_message, make_sentence
+from service.expected_values import list_known_fields, write_example
 from synthesis.model.error_path import select_given_steps
 
 MAX_FAULTS = 20
@@ -20,17 +19,22 @@ MAX_STEP = 100
 """Maximum length of a reported name in a path, characters."""
 
 
-MAX_LISTED_FIELDS = 8
-"""Maximum number of fields that the message on an unknown field lists."""
+MAX_LISTED_FIELDS, MAX_FIELDS_BESIDES = 40, 8
+"""Maximum number of fields that the message on an unknown field lists: alone, and besides a similar name."""
+
+LIMITS_PAGE = "docs/methods/overview.md#what-the-service-does-not-do"
+"""Section of the documentation on what the service does not do."""
+
+_UNSUPPORTED = (
+    "3d", "arm", "belt", "chain", "compliant", "delta", "flexure", "hexapod", "hydraulic", "manipulator", "motor",
+    "multi_dof", "parallel_robot", "pneumatic", "pulley", "robot", "scara", "serial", "spatial", "stewart", "two_dof",
+)  # fmt: skip
+"""Parts of names of mechanisms that the service does not treat."""
+
+MIN_KIND_SIMILARITY = 0.5
+"""Minimum similarity of kinds that are suggested: names of different kinds share few letters."""
 
 _TYPE_IDS = {
-    "extra_forbidden": "service-unknown-field",
-    "missing": "service-field-required",
-    "list_type": "service-list-expected",
-    "tuple_type": "service-list-expected",
-    "model_type": "service-object-expected",
-    "model_attributes_type": "service-object-expected",
-    "dict_type": "service-object-expected",
     "string_type": "service-string-expected",
     "int_type": "service-integer-expected",
     "int_parsing": "service-integer-expected",
@@ -42,6 +46,16 @@ _TYPE_IDS = {
 }
 """Messages without values, by pydantic's types of errors."""
 
+_SHAPE_IDS = {
+    "missing": ("service-field-required", "service-field-required-as"),
+    "list_type": ("service-list-expected", "service-list-expected-as"),
+    "tuple_type": ("service-list-expected", "service-list-expected-as"),
+    "model_type": ("service-object-expected", "service-object-expected-as"),
+    "model_attributes_type": ("service-object-expected", "service-object-expected-as"),
+    "dict_type": ("service-object-expected", "service-object-expected-as"),
+}
+"""Messages on the form of a value by pydantic's types of errors: without and with an example."""
+
 _LIMIT_IDS = {
     "greater_than": ("service-input-greater-than", "gt"),
     "greater_than_equal": ("service-input-greater-equal", "ge"),
@@ -50,14 +64,20 @@ _LIMIT_IDS = {
 }
 """Messages on limits of numbers by pydantic's types of errors, with the name of the limit in the error's context."""
 
-_CUSTOM_IDS = {"unknown_kind": "service-kind-unknown", "unknown_output": "service-output-unknown"}
-"""Messages by our own types of errors, whose texts end with the permitted names after a colon."""
+_OWN_TYPES = ("value_error", "assertion_error")
+"""Types of errors whose texts are messages of our own validators."""
 
 _UNKNOWN_FIELD_PREFIX = "service-unknown-field"
 """Beginning of the ids of all messages on an unknown field."""
 
+_WRAPPERS = {"problem": "kind", "mechanism": "type"}
+"""Fields of a body whose contents a client may send without them, with a field of these contents."""
+
 Models = Mapping[str, object]
 """Types that the parts of a request are validated against: `body`, `query`."""
+
+Fault = Mapping[str, Any]
+"""An error of pydantic."""
 
 
 def format_pointer(location: Iterable[str | int]) -> str:
@@ -68,7 +88,7 @@ def format_pointer(location: Iterable[str | int]) -> str:
     return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
 
 
-def locate_fault(fault: Mapping[str, Any], body: object) -> str:
+def locate_fault(fault: Fault, body: object) -> str:
     """Return the JSON pointer to a fault of pydantic in the request.
 
     A location begins with the part of the request; in a body the pointer starts at the body itself.
@@ -82,31 +102,66 @@ def locate_fault(fault: Mapping[str, Any], body: object) -> str:
     return format_pointer(steps)
 
 
-def describe_faults(faults: Iterable[Mapping[str, Any]], body: object, models: Models) -> list[tuple[str, str]]:
+def describe_faults(faults: Iterable[Fault], body: object, models: Models) -> list[tuple[str, str]]:
     """Return the place and a description of each fault of pydantic, without repetitions.
 
-    Unknown fields get the most similar name among the fields that their object may have according to ``models``.
+    The members of a union, each of which reports its own faults, are described together. Names and values get the most
+    similar permitted one, and values of another form an example, according to ``models``.
     """
-    # A union tries several models, which may report the same fault.
-    placed: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
-    # A body may have thousands of equal faults, and composing a text takes longer than finding it.
-    explained: dict[tuple[str, str, bool], str] = {}
+    placed: dict[str, list[Fault]] = {}
     for fault in faults:
-        key = fault["type"], fault["msg"], isinstance(fault["input"], dict)
-        if key not in explained:
-            explained[key] = _explain_fault(fault)
-        placed.setdefault((locate_fault(fault, body), explained[key]), []).append(fault)
-    described: list[tuple[str, str]] = []
-    for (path, detail), same in placed.items():
-        # Similar names are searched only for faults that are reported: a body may have thousands of unknown fields, and
-        # comparing names is slow.
-        if same[0]["type"] == "extra_forbidden" and len(described) < MAX_FAULTS:
-            detail = _explain_unknown_field(same, models)
-        described.append((path, detail))
-    return described
+        placed.setdefault(locate_fault(fault, body), []).append(fault)
+    for name, own_field in _WRAPPERS.items():
+        if isinstance(body, dict) and name not in body and own_field in body and f"/{name}" in placed:
+            example = f'{{"{name}": {{"{own_field}": "...", ...}}}}'
+            return [(f"/{name}", compose("service-wrapper-missing", field=name, example=example))]
+    containers = {path.rpartition("/")[0] for path in placed}
+    described: dict[tuple[str, str], None] = {}
+    # A body may have thousands of equal faults, and composing a text takes longer than finding it.
+    explained: dict[tuple[str, str], str] = {}
+    for path, same in placed.items():
+        for group in _group_faults(same, has_faults_below=path in containers):
+            key = group[0]["type"], group[0]["msg"]
+            if len(described) < MAX_FAULTS:
+                detail = _explain_faults(group, models)
+            # Further faults are counted only.
+            elif key not in explained:
+                explained[key] = detail = _explain_faults(group[:1], {})
+            else:
+                detail = explained[key]
+            described[path, detail] = None
+    return list(described)
 
 
-def _explain_unknown_field(faults: Iterable[Mapping[str, Any]], models: Models) -> str:
+def _group_faults(faults: Sequence[Fault], *, has_faults_below: bool) -> list[list[Fault]]:
+    """Group the faults at one place that are described together.
+
+    A member of a union that is no list or object has nothing to say about one in which another member finds faults.
+    """
+    literal = [fault for fault in faults if fault["type"] == "literal_error"]
+    others = [fault for fault in faults if fault["type"] != "literal_error"]
+    if has_faults_below:
+        literal = [fault for fault in literal if not isinstance(fault["input"], list | dict)]
+    unknown = [fault for fault in others if fault["type"] == "extra_forbidden"]
+    lists = [fault for fault in others if fault["type"] in ("list_type", "tuple_type")]
+    apart = ("extra_forbidden", "list_type", "tuple_type") if literal else ("extra_forbidden",)
+    rest = [fault for fault in others if fault["type"] not in apart]
+    first = [*literal, *lists] if literal else []
+    return [group for group in (first, unknown) if group] + [[fault] for fault in rest]
+
+
+def _explain_faults(faults: Sequence[Fault], models: Models) -> str:
+    """Describe the faults of one place."""
+    match faults[0]["type"]:
+        case "extra_forbidden":
+            return _explain_unknown_field(faults, models)
+        case "literal_error":
+            return _explain_literals(faults, models)
+        case _:
+            return _explain_fault(faults[0], models)
+
+
+def _explain_unknown_field(faults: Iterable[Fault], models: Models) -> str:
     """Describe an unknown field, reported by one or more members of a union."""
     name = ""
     known: dict[str, None] = {}
@@ -114,14 +169,22 @@ def _explain_unknown_field(faults: Iterable[Mapping[str, Any]], models: Models) 
         part, *steps, last = fault["loc"]
         name = str(last)
         known |= dict.fromkeys(list_known_fields(models.get(part), steps))
-    if len(name) <= MAX_STEP and (near := get_close_matches(name, known, 1)):
-        return compose("service-unknown-field-resembles", field=near[0])
-    if 0 < len(known) <= MAX_LISTED_FIELDS:
-        *others, final = (f"`{field}`" for field in known)
-        if not others:
-            return compose("service-unknown-field-besides-one", field=final)
-        return compose("service-unknown-field-besides", fields=", ".join(others), last=final)
-    return compose("service-unknown-field")
+    near = _find_similar(name, known)
+    if not known or len(known) > (MAX_FIELDS_BESIDES if near else MAX_LISTED_FIELDS):
+        return compose("service-unknown-field-resembles", field=near) if near else compose("service-unknown-field")
+    *others, final = (f"`{field}`" for field in known)
+    if not others:
+        return compose("service-unknown-field-besides-one", field=final)
+    listed = {"fields": ", ".join(others), "last": final}
+    if near:
+        return compose("service-unknown-field-resembles-one-of", field=near, **listed)
+    return compose("service-unknown-field-besides", **listed)
+
+
+def _find_similar(name: object, known: Iterable[str]) -> str | None:
+    """Return the most similar of the known names."""
+    near = get_close_matches(name, known, 1) if isinstance(name, str) and len(name) <= MAX_STEP else []
+    return near[0] if near else None
 
 
 def is_unknown_field(detail: str) -> bool:
@@ -130,73 +193,47 @@ def is_unknown_field(detail: str) -> bool:
     return message is not None and message.id.startswith(_UNKNOWN_FIELD_PREFIX)
 
 
-def list_known_fields(annotation: object, steps: Iterable[str | int]) -> list[str]:
-    """Return the names in JSON of the fields that the object at a place may have.
-
-    Parameters
-    ----------
-    annotation : type or annotation
-        Type of the whole document.
-    steps : iterable of str or int
-        Place as in pydantic's errors: after each union, a step names the member that was tried.
-    """
-    types = _list_members(annotation)
-    for step in steps:
-        named = [type_ for type_ in types if len(types) > 1 and _is_named(type_, step)]
-        below = [member for type_ in types for member in _list_types_below(type_, step)]
-        # Validators of pydantic add steps that name neither a union member nor a field; such a step changes nothing.
-        types = named or below or types
-    models = [type_ for type_ in types if isinstance(type_, type) and issubclass(type_, BaseModel)]
-    return [field.alias or name for model in models for name, field in model.model_fields.items()]
+def explain_kind(kind: object, kinds: Iterable[str]) -> str:
+    """Describe a missing or unknown kind of problem or type of mechanism, from the client or None, by similar ones."""
+    listed = list(kinds)
+    names = ", ".join(listed)
+    if kind is None:
+        return compose("service-kind-missing", names=names)
+    name = str(kind)[:MAX_STEP].lower().replace("-", "_").replace(" ", "_")
+    if any(part in name for part in _UNSUPPORTED):
+        return compose("service-kind-unsupported", page=LIMITS_PAGE, names=names)
+    if near := get_close_matches(name, listed, 3, MIN_KIND_SIMILARITY):
+        return compose("service-kind-resembles", near=", ".join(near), names=names)
+    return compose("service-kind-unknown", names=names)
 
 
-def _list_members(annotation: object) -> list[object]:
-    """Return the members of a union, without annotations; of another type the type itself."""
-    origin = get_origin(annotation)
-    if origin is Annotated:
-        return _list_members(get_args(annotation)[0])
-    if origin in (Union, UnionType):
-        return [member for part in get_args(annotation) for member in _list_members(part)]
-    return [annotation]
-
-
-def _is_named(type_: object, step: str | int) -> bool:
-    """Return whether a step of a location names a member of a union: by its class, or by the tag of its kind."""
-    if not (isinstance(type_, type) and issubclass(type_, BaseModel)):
-        return False
-    tags = (type_.model_fields[name].annotation for name in ("kind", "type") if name in type_.model_fields)
-    return step == type_.__name__ or any(str(step).strip("<>") in get_args(tag) for tag in tags)
-
-
-def _list_types_below(type_: object, step: str | int) -> list[object]:
-    """Return the types of a field of a model, or of the elements of a list or a mapping."""
-    if isinstance(type_, type) and issubclass(type_, BaseModel):
-        fields = (field for name, field in type_.model_fields.items() if step in (name, field.alias))
-        return [member for field in fields for member in _list_members(field.annotation)]
-    elements = get_args(type_)
-    if isinstance(step, int) and get_origin(type_) in (list, tuple, Sequence):
-        return [member for element in elements for member in _list_members(element)]
-    if isinstance(step, str) and get_origin(type_) in (dict, Mapping):
-        return _list_members(elements[1])
-    return []
-
-
-def _explain_fault(fault: Mapping[str, Any]) -> str:
+def _explain_fault(fault: Fault, models: Models) -> str:
     """Describe a fault of pydantic in a sentence."""
     type_, text = fault["type"], str(fault["msg"])
-    # A value of an unknown kind that is not an object cannot have a kind at all.
-    if type_ == "unknown_kind" and not isinstance(fault["input"], dict):
+    if type_ == "unknown_kind":
+        names = text.rpartition(": ")[2].split(", ")
+        # A value of an unknown kind that is not an object cannot have a kind at all.
+        if isinstance(fault["input"], dict):
+            return explain_kind(fault["input"].get("kind"), names)
         return compose("service-object-expected")
-    if type_ in _CUSTOM_IDS:
-        return compose(_CUSTOM_IDS[type_], names=text.rpartition(": ")[2])
+    if type_ == "unknown_output":
+        return compose("service-output-unknown", names=text.rpartition(": ")[2])
+    if type_ in _SHAPE_IDS:
+        part, *steps = fault["loc"]
+        example = write_example(models.get(part), steps)
+        plain, shaped = _SHAPE_IDS[type_]
+        return compose(plain) if example is None else compose(shaped, example=example)
     if type_ in _TYPE_IDS:
         return compose(_TYPE_IDS[type_])
-    known = _explain_by_context(type_, fault.get("ctx", {}))
-    return known or make_sentence(text.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    known = _explain_by_context(fault, fault.get("ctx", {}))
+    if known is None and type_ in _OWN_TYPES:
+        known = make_sentence(text.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    return compose("service-input-invalid") if known is None else known
 
 
-def _explain_by_context(type_: str, context: Mapping[str, Any]) -> str | None:
+def _explain_by_context(fault: Fault, context: Mapping[str, Any]) -> str | None:
     """Describe a fault of pydantic by the values in its context; return None for a type without a message."""
+    type_ = fault["type"]
     if type_ in _LIMIT_IDS:
         message_id, name = _LIMIT_IDS[type_]
         return compose(message_id, limit=_format_limit(context[name]))
@@ -209,14 +246,15 @@ def _explain_by_context(type_: str, context: Mapping[str, Any]) -> str | None:
             return compose("service-string-too-long", count=context["max_length"])
         case "string_pattern_mismatch":
             return compose("service-string-mismatch", pattern=context["pattern"])
-        case "literal_error":
-            return _explain_literal(context["expected"])
         case "union_tag_not_found":
             return compose("service-discriminator-missing", field=context["discriminator"])
         case "union_tag_invalid":
             # The tag is text from the client and is not repeated.
-            names = context["expected_tags"]
-            return compose("service-discriminator-unknown", field=context["discriminator"], names=names)
+            field, names = context["discriminator"], context["expected_tags"]
+            near = _find_similar(context["tag"], _read_names(names))
+            if near:
+                return compose("service-discriminator-resembles", field=field, near=f"'{near}'", names=names)
+            return compose("service-discriminator-unknown", field=field, names=names)
     return None
 
 
@@ -234,12 +272,31 @@ def _explain_length(type_: str, context: Mapping[str, Any]) -> str | None:
     return compose(message_id, least=context["min_length"], count=count)
 
 
-def _explain_literal(expected: str) -> str:
-    """Describe a value other than the expected ones, which pydantic lists as "'mm', 'cm' or 'in'"."""
-    names, joined, last = expected.rpartition(" or ")
-    if not joined:
+def _explain_literals(faults: Sequence[Fault], models: Models) -> str:
+    """Describe a value other than the permitted ones, which the members of a union may list in parts.
+
+    A fault that is no literal is that of a list, which is permitted as well.
+    """
+    literal = [fault for fault in faults if fault["type"] == "literal_error"]
+    # Pydantic lists the values as "'mm', 'cm' or 'in'".
+    listed = [name for fault in literal for name in re.split(r", | or ", fault["ctx"]["expected"])]
+    *others, last = dict.fromkeys(listed)
+    near = _find_similar(literal[0]["input"], [name.strip("'") for name in (*others, last)])
+    names = ", ".join(others)
+    if len(literal) < len(faults):
+        part, *steps = faults[-1]["loc"]
+        example = write_example(models.get(part), steps) or "[...]"
+        return compose("service-input-or-list", names=", ".join((*others, last)), example=example)
+    if not others:
         return compose("service-input-is", name=last)
-    return compose("service-input-one-of", names=names, last=last)
+    if near is None:
+        return compose("service-input-one-of", names=names, last=last)
+    return compose("service-input-resembles", near=f"'{near}'", names=names, last=last)
+
+
+def _read_names(listed: str) -> list[str]:
+    """Return the names in a list such as "'dwell', 'rise'"."""
+    return re.findall(r"'([^']*)'", listed)
 
 
 def _format_limit(limit: float) -> str:

@@ -39,10 +39,10 @@ service-title-invalid-mechanism = Ungültiges Getriebe
 
 service-many-fields-invalid =
     Mehr als { $count } Felder der Anfrage sind ungültig; die ersten { $count } sind aufgeführt.
-service-fields-invalid =
+service-other-fields-invalid =
     { $count ->
-        [one] { $count } Feld der Anfrage ist ungültig.
-       *[other] { $count } Felder der Anfrage sind ungültig.
+        [one] { $count } weiteres Feld ist ungültig.
+       *[other] { $count } weitere Felder sind ungültig.
     }
 service-store-unavailable =
     Der Auftragsspeicher antwortet nicht. Die Anfrage später noch einmal senden; mit einem `Idempotency-Key` entsteht
@@ -82,10 +82,25 @@ service-too-many-listeners = Zu viele Ihrer Clients verfolgen Aufträge; später
 
 # Fields of requests
 
+service-fault-at-place = { $path }: { $reason }
+service-input-invalid = Dieser Wert ist hier nicht zulässig.
+service-wrapper-missing = Dies gehört in das Feld `{ $field }`: { $example }.
+service-field-required-as = Dieses Feld ist erforderlich, etwa { $example }.
+service-list-expected-as = Erwartet wird eine Liste, etwa { $example }.
+service-object-expected-as = Erwartet wird ein Objekt, etwa { $example }.
+service-input-resembles = Ist { $near } gemeint? Erwartet wird { $names } oder { $last }.
+service-input-or-list = Erwartet wird { $names } oder eine Liste, etwa { $example }.
+service-discriminator-resembles = Das Feld { $field } muss eines von diesen nennen: { $names }. Ist { $near } gemeint?
+service-unknown-field-resembles-one-of =
+    Unbekanntes Feld; ist `{ $field }` gemeint? Die Felder sind { $fields } und { $last }.
+service-kind-missing = Dieses Feld angeben; möglich sind: { $names }.
+service-kind-resembles = Unbekannt; ist { $near } gemeint? Möglich sind: { $names }.
+service-kind-unsupported =
+    Das leistet der Dienst nicht; { $page } nennt, was er auslässt. Möglich sind: { $names }.
 service-unknown-field = Unbekanntes Feld; den Namen prüfen.
 service-field-required = Dieses Feld ist erforderlich.
-service-list-expected = Dies muss eine Liste sein.
-service-object-expected = Dies muss ein Objekt sein.
+service-list-expected = Erwartet wird eine Liste.
+service-object-expected = Erwartet wird ein Objekt.
 service-string-expected = Erwartet wird ein Text.
 service-integer-expected = Erwartet wird eine ganze Zahl.
 service-number-expected = Erwartet wird eine Zahl.
@@ -95,7 +110,7 @@ service-input-greater-than = Der Wert muss größer als { $limit } sein.
 service-input-greater-equal = Der Wert muss mindestens { $limit } sein.
 service-input-less-than = Der Wert muss kleiner als { $limit } sein.
 service-input-less-equal = Der Wert darf höchstens { $limit } sein.
-service-kind-unknown = Das Feld kind muss angegeben sein und eines von diesen nennen: { $names }.
+service-kind-unknown = Unbekannt; möglich sind: { $names }.
 service-output-unknown = Das Feld type muss eines von diesen nennen: { $names }.
 service-unknown-field-resembles = Unbekanntes Feld; ist `{ $field }` gemeint?
 service-unknown-field-besides-one = Unbekanntes Feld; das einzige Feld ist { $field }.

@@ -38,10 +38,10 @@ service-title-invalid-mechanism = Invalid mechanism
 # Requests as a whole
 
 service-many-fields-invalid = More than { $count } fields of the request are invalid; the first { $count } are listed.
-service-fields-invalid =
+service-other-fields-invalid =
     { $count ->
-        [one] { $count } field of the request is invalid.
-       *[other] { $count } fields of the request are invalid.
+        [one] { $count } other field is invalid.
+       *[other] { $count } other fields are invalid.
     }
 service-store-unavailable =
     The job store does not answer. Send the request again later; with an `Idempotency-Key` this creates at most one job.
@@ -77,59 +77,74 @@ service-too-many-listeners = Too many of your clients are listening; try again.
 
 # Fields of requests
 
+service-fault-at-place = { $path }: { $reason }
+service-input-invalid = This value is not permitted here.
+service-wrapper-missing = Put it into the field `{ $field }`: { $example }.
+service-field-required-as = This field is required, for example { $example }.
+service-list-expected-as = Expected a list, for example { $example }.
+service-object-expected-as = Expected an object, for example { $example }.
+service-input-resembles = Did you mean { $near }? Expected { $names } or { $last }.
+service-input-or-list = Expected { $names }, or a list, for example { $example }.
+service-discriminator-resembles = The field { $field } must be one of: { $names }. Did you mean { $near }?
+service-unknown-field-resembles-one-of =
+    Unknown field; did you mean `{ $field }`? The fields are { $fields } and { $last }.
+service-kind-missing = Give this field; it must be one of: { $names }.
+service-kind-resembles = Unknown; did you mean { $near }? The permitted names are: { $names }.
+service-kind-unsupported =
+    The service does not do this; { $page } lists what it leaves out. The permitted names are: { $names }.
 service-unknown-field = Unknown field; check its name.
 service-field-required = This field is required.
-service-list-expected = This must be a list.
-service-object-expected = This must be an object.
-service-string-expected = Input should be a valid string.
-service-integer-expected = Input should be a valid integer.
-service-number-expected = Input should be a valid number.
-service-input-not-finite = Input should be a finite number.
-service-boolean-expected = Input should be a valid boolean.
-service-input-greater-than = Input should be greater than { $limit }.
-service-input-greater-equal = Input should be greater than or equal to { $limit }.
-service-input-less-than = Input should be less than { $limit }.
-service-input-less-equal = Input should be less than or equal to { $limit }.
-service-kind-unknown = Kind must be given and be one of: { $names }.
+service-list-expected = Expected a list.
+service-object-expected = Expected an object.
+service-string-expected = Expected a text.
+service-integer-expected = Expected an integer.
+service-number-expected = Expected a number.
+service-input-not-finite = Expected a finite number.
+service-boolean-expected = Expected true or false.
+service-input-greater-than = The value must be greater than { $limit }.
+service-input-greater-equal = The value must be at least { $limit }.
+service-input-less-than = The value must be less than { $limit }.
+service-input-less-equal = The value must be at most { $limit }.
+service-kind-unknown = Unknown; the permitted names are: { $names }.
 service-output-unknown = Type must be one of: { $names }.
 service-unknown-field-resembles = Unknown field; did you mean `{ $field }`?
 service-unknown-field-besides-one = Unknown field; the only field is { $field }.
 service-unknown-field-besides = Unknown field; the fields are { $fields } and { $last }.
-service-string-too-short =
+service-string-too-short = 
     { $count ->
-        [one] String should have at least { $count } character.
-       *[other] String should have at least { $count } characters.
+        [one] The text must have at least { $count } character.
+       *[other] The text must have at least { $count } characters.
     }
-service-string-too-long =
+service-string-too-long = 
     { $count ->
-        [one] String should have at most { $count } character.
-       *[other] String should have at most { $count } characters.
+        [one] The text must have at most { $count } character.
+       *[other] The text must have at most { $count } characters.
     }
-service-string-mismatch = String should match pattern '{ $pattern }'.
+service-string-mismatch = The text must match the pattern '{ $pattern }'.
 service-discriminator-missing = The field { $field } is required.
 service-discriminator-unknown = The field { $field } must be one of: { $names }.
-service-object-too-long =
+service-object-too-long = 
     { $most ->
-        [one] Object should have at most { $most } member.
-       *[other] Object should have at most { $most } members.
+        [one] The object must have at most { $most } member.
+       *[other] The object must have at most { $most } members.
     }
-service-list-too-long =
+service-list-too-long = 
     { $most ->
-        [one] List should have at most { $most } item, not { $count }.
-       *[other] List should have at most { $most } items, not { $count }.
+        [one] The list must have at most { $most } item, not { $count }.
+       *[other] The list must have at most { $most } items, not { $count }.
     }
-service-object-too-short =
+service-object-too-short = 
     { $least ->
-        [one] Object should have at least { $least } member, not { $count }.
-       *[other] Object should have at least { $least } members, not { $count }.
+        [one] The object must have at least { $least } member, not { $count }.
+       *[other] The object must have at least { $least } members, not { $count }.
     }
-service-list-too-short =
+service-list-too-short = 
     { $least ->
-        [one] List should have at least { $least } item, not { $count }.
-       *[other] List should have at least { $least } items, not { $count }.
+        [one] The list must have at least { $least } item, not { $count }.
+       *[other] The list must have at least { $least } items, not { $count }.
     }
-service-input-is = Input should be { $name }.
-service-input-one-of = Input should be { $names } or { $last }.
+service-input-is = Expected { $name }.
+service-input-one-of = Expected { $names } or { $last }.
 service-label-unprintable = the label must not contain NUL or lone surrogates
 
 # Analyses, drawings and files

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from kinematics.message import Message, compose, find_message, remember_text
+from kinematics.message import Message, compose, find_message, join_messages, remember_text
 from service.error_messages import MAX_FAULTS, Models, describe_faults
 
 FieldFaults = Sequence[tuple[str, str]]
@@ -82,18 +82,18 @@ def refuse_not_found(detail: str) -> Refusal:
 
 def refuse_invalid_problem(errors: FieldFaults) -> Refusal:
     """Build the refusal of an invalid problem; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-problem", "service-title-invalid-problem", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-problem", "service-title-invalid-problem", describe_first_fault(errors), errors=errors)
 
 
 def refuse_invalid_mechanism(errors: FieldFaults, *, defect: str | None = None) -> Refusal:
     """Build the refusal of an invalid mechanism; ``errors`` are pairs of path and detail."""
-    detail = count_invalid_fields(errors)
+    detail = describe_first_fault(errors)
     return Refusal(422, "invalid-mechanism", "service-title-invalid-mechanism", detail, errors=errors, defect=defect)
 
 
 def refuse_invalid_request(errors: FieldFaults) -> Refusal:
     """Build the refusal of another invalid part of a request; ``errors`` are pairs of path and detail."""
-    return Refusal(422, "invalid-request", "service-title-invalid-request", count_invalid_fields(errors), errors=errors)
+    return Refusal(422, "invalid-request", "service-title-invalid-request", describe_first_fault(errors), errors=errors)
 
 
 def refuse_invalid_body(error: ValidationError, body: object, model: type[BaseModel]) -> Refusal:
@@ -112,19 +112,21 @@ def refuse_faults(faults: Sequence[Mapping[str, Any]], body: object, models: Mod
     return refuse_invalid_request(placed)
 
 
-def count_invalid_fields(errors: FieldFaults) -> str:
-    """Return a sentence with the number of invalid fields of a request."""
+def describe_first_fault(errors: FieldFaults) -> str:
+    """Return the first fault of a request in words, with its place and the number of other invalid fields."""
+    path, reason = errors[0]
+    first = compose("service-fault-at-place", path=path, reason=reason) if path else reason
     # Several faults may be reported for one field.
     count = len({path for path, _ in errors})
     if count > MAX_FAULTS:
-        return compose("service-many-fields-invalid", count=MAX_FAULTS)
-    return compose("service-fields-invalid", count=count)
+        return join_messages([first, compose("service-many-fields-invalid", count=MAX_FAULTS)])
+    return join_messages([first, compose("service-other-fields-invalid", count=count - 1)]) if count > 1 else first
 
 
 __all__ = [
     "FieldFaults",
     "Refusal",
-    "count_invalid_fields",
+    "describe_first_fault",
     "refuse_faults",
     "refuse_invalid_body",
     "refuse_invalid_mechanism",

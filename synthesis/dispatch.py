@@ -7,7 +7,7 @@ import time
 from kinematics.kernel_marks import LINKAGES_PART, is_compiled
 from kinematics.linkage import warm
 from kinematics.message import compose
-from synthesis.model.answer import AnyResult
+from synthesis.model.answer import AnyNearestMiss, AnyResult
 from synthesis.model.kind import AnyKind, Progress, scale_progress
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
@@ -26,7 +26,7 @@ from synthesis.results.measured_ranking import (
 from synthesis.results.measurement import measure_designs
 from synthesis.results.pareto import pareto_front
 from synthesis.results.practicality import sort_usable_first
-from synthesis.results.remarks import append_remark
+from synthesis.results.remarks import append_remark, write_quantity
 from synthesis.results.rounding import round_designs
 
 __all__ = [
@@ -78,6 +78,7 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
     if isinstance(problem, LinkageProblem):
         result = _finish_linkages(problem, result, kind)
     told(1.0, compose("results-verified"))
+    result = result.model_copy(update={"summary": append_remark(result.summary, _describe_listed(problem, result))})
     return result.model_copy(update={"messages": list_messages(result)})
 
 
@@ -118,7 +119,8 @@ def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation
     if not found.sound:
         miss = found.nearest_miss
         reached = "" if miss is None or kind.easing is None else kind.easing.describe_reached(miss.reachable)
-        return result.model_copy(update={"nearest_miss": miss, "summary": append_remark(result.summary, reached)})
+        remark = reached or _describe_overlap(problem, miss)
+        return result.model_copy(update={"nearest_miss": miss, "summary": append_remark(result.summary, remark)})
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
     # These designs were found by another search, so the original one counts as incomplete.
@@ -130,6 +132,26 @@ def _apply_relaxation(problem: ProblemBase, result: AnyResult, found: Relaxation
             "summary": compose("synthesis-designs-without-constraints", count=count),
         }
     )
+
+
+def _describe_listed(problem: ProblemBase, result: AnyResult) -> str:
+    """Return a sentence on the number of designs that are listed; empty if all that passed are."""
+    # Rounding to a grid drops designs, which the summary says already.
+    if isinstance(problem, LinkageProblem) and problem.manufacture is not None and problem.manufacture.is_gridded:
+        return ""
+    listed = sum(design.verification.passed for design in result.designs)
+    if not 0 < listed < result.search.accepted:
+        return ""
+    return compose("synthesis-designs-listed", listed=listed, count=result.search.accepted)
+
+
+def _describe_overlap(problem: ProblemBase, miss: AnyNearestMiss | None) -> str:
+    """Return a sentence on the penetration depth of a nearest miss in an obstacle; empty if nothing overlaps."""
+    gaps = [] if miss is None else miss.gaps
+    depth = max((-gap.value for gap in gaps if gap.check == "obstacles" and gap.value is not None), default=0.0)
+    if depth <= 0.0:
+        return ""
+    return compose("synthesis-nearest-miss-overlaps", depth=write_quantity(f"{depth:.4g}", problem.length_unit))
 
 
 def warm_up() -> None:

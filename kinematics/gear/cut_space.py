@@ -18,8 +18,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinematics.arrays import Complex, Real
-from kinematics.gear.flanks import compute_corner_rounding
-from kinematics.gear.teeth import Gear, Mesh
+from kinematics.gear.teeth import Gear, Mesh, compute_corner_rounding
 
 Freedom = Callable[[Complex, Real], Real]
 """Depth of points of a blank inside a tool, as a function of the points and the blank's rotation; negative outside."""

@@ -23,39 +23,10 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear, Mesh
-
-TIP_ROUNDING = 0.38
-"""Radius of the rack's rounded tip in modules (ISO 53, profile A); smaller if the tip is too narrow for it."""
 
 CUTTER_ADDENDUM = 1.25
 """Addendum of a cutter for rings, in modules: the dedendum that it leaves at no shift."""
-
-
-def compute_corner_rounding(pressure_angle: float, dedendum: float) -> float:
-    """Compute the radius of the rack's rounded tip, modules.
-
-    Raises
-    ------
-    DimensionError
-        If the rack's tooth comes to a point before it has cut to the root circle.
-    """
-    # Half the width of the rack's tooth at its tip.
-    wide = 0.25 * math.pi - dedendum * math.tan(pressure_angle)
-    if wide < 0.0:
-        raise DimensionError("dedendum", "kinematics-depth-of-rack-tooth", dedendum)
-    # At most the circle that touches both flanks at the tip.
-    return min(TIP_ROUNDING, wide * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle)))
-
-
-def compute_straight_depth(pressure_angle: float, dedendum: float) -> float:
-    """Compute the depth below its reference line that the rack's straight flank reaches, modules.
-
-    >>> round(compute_straight_depth(math.radians(20.0), 1.25), 4)
-    1.0
-    """
-    return dedendum - compute_corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))
 
 
 def compute_rack_form(gear: Gear, depth: float) -> float:
@@ -67,11 +38,6 @@ def compute_rack_form(gear: Gear, depth: float) -> float:
     """
     sine = math.sin(gear.pressure_angle)
     return gear.pitch_radius * sine - gear.module * (depth - gear.shift) / sine
-
-
-def compute_min_shift(teeth: float, pressure_angle: float, depth: float) -> float:
-    """Compute the shift below which a rack with this depth of straight flank undercuts a gear: x = k − z sin² φ / 2."""
-    return depth - 0.5 * teeth * math.sin(pressure_angle) ** 2
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,14 @@ class HelicalGear:
         """Spur gear of the transverse plane: its meshes have the transverse contact ratio."""
         # Depths are given in normal modules, the spur gear's in transverse modules.
         shrunk = math.cos(self.helix_angle)
-        return Gear(self.teeth, self.transverse_module, self.transverse_pressure_angle, shrunk, 1.25 * shrunk)
+        return Gear(
+            self.teeth,
+            self.transverse_module,
+            self.transverse_pressure_angle,
+            shrunk,
+            1.25 * shrunk,
+            helix_angle=self.helix_angle,
+        )
 
     def min_face_width(self, overlap: float = USUAL_OVERLAP) -> float:
         """Return the face over which a tooth advances by ``overlap`` transverse pitches: overlap × axial pitch."""

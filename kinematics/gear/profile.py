@@ -28,8 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.arrays import Complex, Real
-from kinematics.gear.flanks import compute_corner_rounding
-from kinematics.gear.teeth import Gear, involute
+from kinematics.gear.teeth import Gear, compute_corner_rounding, involute
 
 FLANK_POINTS, FILLET_POINTS, ARC_POINTS = 24, 20, 4
 """Points on a flank, a fillet, and half of a tip or root arc: the chords deviate by about 1e-4 module."""

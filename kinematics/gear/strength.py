@@ -28,9 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.gear.flanks import Contact, compute_corner_rounding
+from kinematics.gear.flanks import Contact
 from kinematics.gear.profile import draw_half_space
-from kinematics.gear.teeth import Gear, involute
+from kinematics.gear.teeth import Gear, compute_corner_rounding, involute
 
 STEEL_ELASTIC_COEFFICIENT = 191.0
 """Elastic coefficient C_p of steel gears, √MPa (Shigley, Table 14-8)."""

@@ -16,7 +16,7 @@ Angles are radians; lengths are in any consistent unit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from kinematics.errors import DimensionError
@@ -25,12 +25,18 @@ FULL_DEPTH_ADDENDUM = 1.0
 FULL_DEPTH_DEDENDUM = 1.25
 """Full-depth teeth, shares of the module (Norton, Table 9-1, coarse pitch)."""
 
+TIP_ROUNDING = 0.38
+"""Radius of the rack's rounded tip in modules (ISO 53, profile A); smaller if the tip is too narrow for it."""
+
 PRESSURE_ANGLE = math.radians(20.0)
 """Default pressure angle, radians: 20°."""
 
 LIMIT_TOLERANCE = 1e-12
 """Share of the limiting radius by which a tip may exceed it: teeth on the limit are sound, and rounding must not reject
 them."""
+
+UNDERCUT_TOLERANCE = 1e-9
+"""Shift, in modules and per tooth, by which a gear may lie below its limit: fits place gears on it, to rounding."""
 
 
 def involute(angle: float) -> float:
@@ -80,11 +86,42 @@ def invert_involute(value: float) -> float:
     return math.atan(invert_involute_tangent(value))
 
 
+def compute_corner_rounding(pressure_angle: float, dedendum: float) -> float:
+    """Compute the radius of the rack's rounded tip, modules.
+
+    Raises
+    ------
+    DimensionError
+        If the rack's tooth comes to a point before it has cut to the root circle.
+    """
+    # Half the width of the rack's tooth at its tip.
+    wide = 0.25 * math.pi - dedendum * math.tan(pressure_angle)
+    if wide < 0.0:
+        raise DimensionError("dedendum", "kinematics-depth-of-rack-tooth", dedendum)
+    # At most the circle that touches both flanks at the tip.
+    return min(TIP_ROUNDING, wide * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle)))
+
+
+def compute_straight_depth(pressure_angle: float, dedendum: float) -> float:
+    """Compute the depth below its reference line that the rack's straight flank reaches, modules.
+
+    >>> round(compute_straight_depth(math.radians(20.0), 1.25), 4)
+    1.0
+    """
+    return dedendum - compute_corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))
+
+
+def compute_min_shift(teeth: float, pressure_angle: float, depth: float) -> float:
+    """Compute the shift below which a rack with this depth of straight flank undercuts a gear: x = k − z sin² φ / 2."""
+    return depth - 0.5 * teeth * math.sin(pressure_angle) ** 2
+
+
 @dataclass(frozen=True)
 class Gear:
     """A spur gear; ``addendum``, ``dedendum`` and ``shift`` are shares of the module.
 
-    ``teeth`` is whole, or the equivalent number of a bevel or helical gear.
+    ``teeth`` is whole, or the equivalent number of a bevel or helical gear. A gear with a ``helix_angle``, radians, is
+    that of the plane of rotation; the rack that cuts it is given in the normal plane.
 
     Raises
     ------
@@ -99,6 +136,7 @@ class Gear:
     dedendum: float = FULL_DEPTH_DEDENDUM
     shift: float = 0.0
     internal: bool = False
+    helix_angle: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.teeth > 0:
@@ -179,14 +217,21 @@ class Gear:
         return self.thickness_at(self.tip_radius) <= 0.0
 
     @property
+    def straight_depth(self) -> float:
+        """Depth below its reference line that the straight flank of the cutting rack reaches, modules."""
+        shrunk = math.cos(self.helix_angle)
+        normal = math.atan(math.tan(self.pressure_angle) * shrunk)
+        return shrunk * compute_straight_depth(normal, self.dedendum / shrunk)
+
+    @property
     def least_shift(self) -> float:
-        """Shift below which the cutting rack undercuts the flank: x = k − z sin² φ / 2, k the addendum coefficient."""
-        return self.addendum - 0.5 * self.teeth * math.sin(self.pressure_angle) ** 2
+        """Shift below which the cutting rack undercuts the flank (Colbourne, The Geometry of Involute Gears, ch. 5)."""
+        return compute_min_shift(self.teeth, self.pressure_angle, self.straight_depth)
 
     @property
     def is_undercut(self) -> bool:
-        """Whether a rack that cuts this gear removes flank above the base circle. Internal teeth are shaped: never."""
-        return not self.internal and self.shift < self.least_shift - LIMIT_TOLERANCE
+        """Whether the rack that cuts this gear removes flank above the base circle; internal teeth are shaped."""
+        return not self.internal and self.shift < self.least_shift - UNDERCUT_TOLERANCE * self.teeth
 
 
 @dataclass(frozen=True)
@@ -408,10 +453,7 @@ def find_saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | No
     need = max(0.0, pinion.least_shift), max(0.0, gear.least_shift)
     choices = [(need[0], -need[0])] if gear.least_shift <= -need[0] else []
     for shifts in [*choices, need]:
-        pair = tuple(
-            Gear(g.teeth, g.module, g.pressure_angle, g.addendum, g.dedendum, x)
-            for g, x in zip((pinion, gear), shifts, strict=True)
-        )
+        pair = tuple(replace(g, shift=x) for g, x in zip((pinion, gear), shifts, strict=True))
         shifted = Mesh(pair[0], pair[1])
         sound = not (shifted.interferes or pair[0].is_pointed or pair[1].is_pointed)
         if sound and shifted.contact_ratio >= least_contact_ratio:

@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, compute_min_teeth
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,11 @@ class WormDrive:
     def axial_pressure_angle(self) -> float:
         """Pressure angle of the worm's rack profile in the middle plane, tan φ_x = tan φ_n / cos λ."""
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.lead_angle))
+
+    @property
+    def is_free_of_interference(self) -> bool:
+        """Whether the threads, a rack in the middle plane, touch the gear's teeth on their involutes only."""
+        return self.gear_teeth >= compute_min_teeth(self.axial_pressure_angle)
 
     @property
     def gear(self) -> Gear:

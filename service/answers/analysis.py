@@ -7,6 +7,7 @@ from pydantic_core import to_json
 
 from kinematics.message import make_sentence
 from service.answers.numerical import refuse_numerical_errors
+from service.error_messages import explain_kind
 from service.refusals import refuse_invalid_body, refuse_invalid_mechanism, refuse_invalid_request
 
 
@@ -19,12 +20,15 @@ def analyse(body: object) -> bytes:
         422, with the place of each fault, if the body is not a valid analysis request.
     """
     from kinematics import errors as kinematics
-    from synthesis.analyses import get_family
+    from synthesis.analyses import get_family, list_types
     from synthesis.analyses.budget import BudgetError
     from synthesis.mechanisms import MechanismError
 
     with refuse_numerical_errors():
-        model = get_family(body.get("mechanism") if isinstance(body, dict) else None).request
+        mechanism = body.get("mechanism") if isinstance(body, dict) else None
+        if isinstance(mechanism, dict) and "type" in mechanism and mechanism["type"] not in (types := list_types()):
+            raise refuse_invalid_mechanism([("/mechanism/type", explain_kind(mechanism["type"], types))])
+        model = get_family(mechanism).request
         try:
             request = model.model_validate(body)
         except ValidationError as error:

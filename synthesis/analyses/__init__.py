@@ -53,6 +53,11 @@ def list_families() -> list[Family]:
     return list(dict.fromkeys([linkage.FAMILY, *FAMILIES.values()]))
 
 
+def list_types() -> list[str]:
+    """Return all types of mechanism that can be analysed, linkages first."""
+    return [*dict.fromkeys(list_mechanism_types(linkage.FAMILY.request)), *FAMILIES]
+
+
 def parse_request(body: object) -> AnalysisRequest:
     """Parse a request from the body of a call.
 
@@ -64,4 +69,4 @@ def parse_request(body: object) -> AnalysisRequest:
     return get_family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
 
 
-__all__ = ["FAMILIES", "AnalysisRequest", "Family", "get_family", "list_families", "parse_request"]
+__all__ = ["FAMILIES", "AnalysisRequest", "Family", "get_family", "list_families", "list_types", "parse_request"]

@@ -70,6 +70,21 @@ analyses-member-unknown = möglich sind die Glieder { $names }
 analyses-mesh-of-equal-bodies = die beiden Räder und ihr Steg müssen drei verschiedene Glieder sein
 analyses-name-unknown = möglich sind { $names }
 analyses-teeth-of-other-gears = erwartet werden Zähnezahlen für { $names }
+analyses-speeds-contradict = speeds, torques, powers: die bekannte Drehzahl von { $body } widerspricht den übrigen
+analyses-speeds-open =
+    { $count ->
+        [one] speeds, torques, powers: { $count } Drehzahl ist nicht bestimmt; eine weitere oder das feste Glied angeben
+       *[other] speeds, torques, powers: { $count } Drehzahlen sind nicht bestimmt; weitere oder das feste Glied angeben
+    }
+analyses-torques-of-clutches-unknown = torques, powers, efficiency: das Moment einer Kupplung folgt nicht aus den Drehzahlen
+analyses-torques-undetermined =
+    torques, powers, efficiency: die gegebenen Momente bestimmen die übrigen nicht; `torques` und `loads` angeben, oder
+    `input`, `output` und `fixed` des Getriebes
+analyses-efficiency-without-power = efficiency: dem Getriebe wird keine Leistung zugeführt
+analyses-ratio-of-resting-output = ratio, exact_ratio: der Abtrieb steht still
+analyses-ratio-without-ends = ratio, exact_ratio: `input` und `output` des Getriebes angeben
+analyses-motion-of-given-speeds =
+    angle, omega, alpha: nur ein `input`, der sich nach `motion` dreht, bewegt die Körper; diese Drehzahlen sind gegeben
 
 # Schalttabelle eines Planetengetriebes.
 analyses-brake-or-clutch =
@@ -123,10 +138,16 @@ analyses-circuits-unknown = circuits, toggles, limits: { $reason }
 analyses-too-many-circuits =
     zu viele Zusammenbaulagen oder zu viele Umdrehungen, bis sich die Bewegung wiederholt, um alle Bewegungsbereiche
     aufzuzählen
+analyses-limits-at-change-point =
+    limits: an einem Wechselpunkt kann sich das Getriebe auf zwei Arten weiterbewegen; die Grenzen sind die des Zweigs der
+    Bezugslage
 analyses-limits-unknown = limits: die Bezugslage liegt dort, wo mehrere Zweige zusammentreffen, oder auf keinem
 analyses-motion-followed-in-part =
     valid: die Glieder sind sehr verschieden lang; die Bewegung wurde bis zur größten Schrittzahl verfolgt, und
     Stellungen dahinter gelten als nicht montierbar, obwohl es sie geben kann
+analyses-output-at-rest = { $field }: null, wo der Abtrieb stillsteht (Totlage), bei { $names }
+analyses-instant-centers-of-one-position =
+    instant_centers: nur für eine einzelne Stellung; diese als `motion.at` angeben
 analyses-no-pushing-leg =
     transmission_angle: kein Glied wird von drei Beinen an Antrieb und Gestell getragen, sodass kein Bein auf einer
     eigenen Bahn schiebt; torque_ratio und force_ratio beschreiben die Kraftübertragung

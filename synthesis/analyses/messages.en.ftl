@@ -70,6 +70,21 @@ analyses-member-unknown = expected one of the members { $names }
 analyses-mesh-of-equal-bodies = its two gears and their carrier must be three different bodies
 analyses-name-unknown = expected one of { $names }
 analyses-teeth-of-other-gears = expected teeth for { $names }
+analyses-speeds-contradict = speeds, torques, powers: the known speed of { $body } contradicts the others
+analyses-speeds-open =
+    { $count ->
+        [one] speeds, torques, powers: { $count } speed is not determined; give another speed, or the fixed member
+       *[other] speeds, torques, powers: { $count } speeds are not determined; give more speeds, or the fixed member
+    }
+analyses-torques-of-clutches-unknown = torques, powers, efficiency: the torque of a clutch does not follow from the speeds
+analyses-torques-undetermined =
+    torques, powers, efficiency: the given torques do not determine the others; give `torques` and `loads`, or the
+    mechanism's `input`, `output` and `fixed`
+analyses-efficiency-without-power = efficiency: no power enters the train
+analyses-ratio-of-resting-output = ratio, exact_ratio: the output is at rest
+analyses-ratio-without-ends = ratio, exact_ratio: give the mechanism's `input` and `output`
+analyses-motion-of-given-speeds =
+    angle, omega, alpha: only an `input` that turns by `motion` moves the bodies; these speeds are given
 
 # Shift table of a planetary train.
 analyses-brake-or-clutch = give either the member that a brake holds or the two members that a clutch connects
@@ -111,10 +126,15 @@ analyses-too-many-links-outside-dyads = this mechanism has too many links outsid
 # Linkages: notes on missing results. They begin with the names of fields, which stay as they are.
 analyses-circuits-unknown = circuits, toggles, limits: { $reason }
 analyses-too-many-circuits = too many assemblies, or too many turns until the motion repeats, to list all circuits
+analyses-limits-at-change-point =
+    limits: at a change point the linkage may move on in two ways; the limits are those of the branch of the reference
 analyses-limits-unknown = limits: the reference lies where several branches meet, or on none
 analyses-motion-followed-in-part =
     valid: the links have very different lengths; the motion was followed up to the maximum number of steps, and
     positions beyond are reported as not valid although they may exist
+analyses-output-at-rest = { $field }: null where the output is at rest, a dead centre, of { $names }
+analyses-instant-centers-of-one-position =
+    instant_centers: listed for a single position only; give it as `motion.at`
 analyses-no-pushing-leg =
     transmission_angle: no link is carried by three legs on the input and the ground, so that no leg pushes along a path
     of its own; torque_ratio and force_ratio describe the transmission of force

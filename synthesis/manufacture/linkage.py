@@ -7,6 +7,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,6 +153,19 @@ class ManufacturedLinkage:
     def has_own_tolerances(self) -> bool:
         """Whether the task itself gives tolerances for targets."""
         return bool(np.isfinite(self.limits).any())
+
+    def select_target(self, index: int) -> Self:
+        """Return the same linkage with one of its targets."""
+        one = slice(index, index + 1)
+        task = dataclasses.replace(
+            self.task,
+            assemblies=self.task.assemblies[one],
+            inputs=self.task.inputs[one],
+            points=None if self.task.points is None else self.task.points[one],
+            angles=None if self.task.angles is None else self.task.angles[one],
+            travels=None if self.task.travels is None else self.task.travels[one],
+        )
+        return dataclasses.replace(self, task=task, own=self.own[one], limits=self.limits[one])
 
     def mark_within_own_tolerances(self, offsets: Real) -> NDArray[np.bool_]:
         """Return a mask, shape (v,), of the variants that satisfy the tolerances given by the task itself.

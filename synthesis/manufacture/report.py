@@ -16,7 +16,7 @@ from kinematics.message import compose
 from synthesis.manufacture.linkage import ManufacturedLinkage, build_product, extract_linkage
 from synthesis.manufacture.play import compute_plays
 from synthesis.manufacture.widest_tolerances import find_widest_tolerances
-from synthesis.manufacture.yield_sampling import list_errors, sample_yield
+from synthesis.manufacture.yield_sampling import get_clearance, list_errors, sample_yield
 from synthesis.model.manufacture.answer import Allocation, ManufactureReport, Sensitivity, WorstCase, Yield
 from synthesis.model.manufacture.request import Exactness, Manufacture, RequiredTargets
 
@@ -65,7 +65,7 @@ def report_manufacture(
         _describe_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")
     ]
     remark = None if np.isfinite(rates.rates).all() else compose("manufacture-toggle-at-target")
-    clearance = 0.0 if block.tolerances is None else block.tolerances.pin_clearance
+    clearance = get_clearance(block)
     play = compute_plays(made, clearance) if clearance > 0.0 else []
     # None means that the clearances let the linkage reach a toggle, not that its play is zero.
     if play is None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Real
 from synthesis.manufacture.linkage import ManufacturedLinkage
-from synthesis.manufacture.yield_sampling import compute_interval, count_good, sample_errors
+from synthesis.manufacture.yield_sampling import compute_interval, count_good, get_clearance, sample_errors
 from synthesis.model.manufacture.answer import Allocation, Yield
 from synthesis.model.manufacture.request import Exactness
 
@@ -113,7 +113,8 @@ def _scale_tolerances(
     def count(width: float, samples: int) -> int:
         # Every width uses the same samples, so that the yield is nearly monotonic in the width.
         share = sample_errors(block.distribution, seed, samples, len(off))
-        return count_good(made, made.nominal_dimensions + share * compute_tolerances(width))
+        variants = made.nominal_dimensions + share * compute_tolerances(width)
+        return count_good(made, variants, get_clearance(block), seed)
 
     def has_required_yield(width: float) -> bool:
         # Fewer samples suffice for the search; the final check uses all of them.

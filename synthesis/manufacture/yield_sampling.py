@@ -1,8 +1,8 @@
 """Yield of a linkage: the share of manufactured linkages that are good, estimated by driven samples.
 
 A sample is good if it can be assembled at every target, stays on its branch, and satisfies the quality at every target
-as well as any tolerances of the task itself. All designs of an answer use the same samples, so that their yields differ
-by the designs and not by chance.
+as well as any tolerances of the task itself. If pins have a clearance, each sample has its own play at each target. All
+designs of an answer use the same samples, so that their yields differ by the designs and not by chance.
 
 The interval is that of Clopper and Pearson, The use of confidence or fiducial limits illustrated in the case of the
 binomial, Biometrika 26 (1934) 404: it contains the true yield with at least the nominal confidence, for any true yield.
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betaincinv
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.linkage.variation import measure_deviations, measure_shares
 from synthesis.manufacture.linkage import LIMIT_SLACK, ManufacturedLinkage
 from synthesis.model.manufacture.answer import Yield
@@ -49,27 +49,72 @@ def sample_errors(distribution: str, seed: int, samples: int, dimensions: int) -
     return share
 
 
-def count_good(product: ManufacturedLinkage, variants: Real) -> int:
-    """Count the good variants (v, n) of a linkage."""
+def sample_play(product: ManufacturedLinkage, clearance: float, samples: int, seed: int, target: int) -> Real:
+    """Sample the effect of clearances at a target, as changes of the dimensions, shape (samples, n).
+
+    The centre of each pin lies anywhere in a disc of radius ``clearance`` around that of its hole, with equal
+    probability, and anew at each target. At a given input, the clearances at O2 and A shift A as a shift of O2 does,
+    and those at B and O4 act as a shift of O4; on a slide, the clearance at B shifts its line.
+    """
+    rng = np.random.default_rng((seed, target))
+
+    def sample_pin() -> Complex:
+        return np.asarray(
+            clearance * np.sqrt(rng.uniform(size=samples)) * np.exp(2j * np.pi * rng.uniform(size=samples))
+        )
+
+    task = product.task
+    shifts = np.zeros((samples, task.dimensions))
+    crank = sample_pin() + sample_pin()
+    shifts[:, 0], shifts[:, 1] = crank.real, crank.imag
+    if task.slides:
+        # The offset is that of O2 from the line, which moves with O2 unless the offset changes as well.
+        shifts[:, 2] = ((crank - sample_pin()) * np.conj(1j * task.slide_direction)).real
+    else:
+        output = sample_pin() + sample_pin()
+        shifts[:, 2], shifts[:, 3] = output.real, output.imag
+    return shifts
+
+
+def count_good(product: ManufacturedLinkage, variants: Real, clearance: float = 0.0, seed: int = 0) -> int:
+    """Count the good variants (v, n) of a linkage whose pins have a clearance."""
+    if clearance == 0.0:
+        return int(np.count_nonzero(_mark_good(product, variants)))
+    good = np.arange(len(variants))
+    for target in range(len(product.task.inputs)):
+        # Clearances differ from target to target, so each one is driven alone.
+        moved = variants[good] + sample_play(product, clearance, len(variants), seed, target)[good]
+        good = good[_mark_good(product.select_target(target), moved)]
+    return len(good)
+
+
+def _mark_good(product: ManufacturedLinkage, variants: Real) -> NDArray[np.bool_]:
+    """Return a mask of the good variants (v, n) of a linkage."""
     # If the task gives no tolerances, the compiled maximum error as a share of its limit decides, without deviations.
     if not product.has_own_tolerances:
-        return int(np.count_nonzero(measure_shares(product.task, variants) <= 1.0 + LIMIT_SLACK))
-    count = 0
+        return np.asarray(measure_shares(product.task, variants) <= 1.0 + LIMIT_SLACK)
+    good = np.zeros(len(variants), np.bool_)
     distance, angle = np.array(product.task.units) * (1.0 + LIMIT_SLACK)
     for begin in range(0, len(variants), BATCH_SIZE):
-        off = measure_deviations(product.task, variants[begin : begin + BATCH_SIZE])
+        batch = slice(begin, begin + BATCH_SIZE)
+        off = measure_deviations(product.task, variants[batch])
         kept = ((off.distances <= distance) & (off.angles <= angle)).all(axis=1)
-        count += int(np.count_nonzero(kept & product.mark_within_own_tolerances(off.offsets)))
-    return count
+        good[batch] = kept & product.mark_within_own_tolerances(off.offsets)
+    return good
 
 
 def sample_yield(product: ManufacturedLinkage, block: Exactness, seed: int) -> Yield:
     """Sample the yield of a linkage with a required quality."""
     off = list_errors(block, product.linkage.mark_pivots(guides=product.task.guides))
     share = sample_errors(block.distribution, seed, block.samples, len(off))
-    count = count_good(product, product.nominal_dimensions + share * off)
+    count = count_good(product, product.nominal_dimensions + share * off, get_clearance(block), seed)
     low, high = compute_interval(count, block.samples)
     return Yield(value=count / block.samples, low=low, high=high, samples=block.samples)
+
+
+def get_clearance(block: Exactness) -> float:
+    """Return the clearance of the pins; 0 without one."""
+    return 0.0 if block.tolerances is None else block.tolerances.pin_clearance
 
 
 def compute_interval(count: int, samples: int, confidence: float = CONFIDENCE_LEVEL) -> tuple[float, float]:

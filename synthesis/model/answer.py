@@ -38,6 +38,7 @@ class Check(Answer):
     value: float | None = optional_field()
     limit: float | None = optional_field()
     dimension: Dimension | None = optional_field("Dimension of value and limit; left out for a pure number.")
+    detail: str | None = optional_field("What the check leaves out, if it covers less than its name says.")
 
 
 class Verification(Answer):

@@ -23,6 +23,7 @@ from synthesis.model.linkage.workspace import Space
 from synthesis.model.linkage.zones import MovingZone, Zone
 from synthesis.model.protocols import VerifiedRange
 from synthesis.verification.branch_drive import MechanismOnBranch
+from synthesis.verification.penetration import measure_penetration
 
 WORKSPACE_CHECKS = ("fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles")
 """Names of the workspace checks."""
@@ -198,11 +199,17 @@ def _find_input_range(space: Space, mechanism: Mechanism, used: VerifiedRange) -
 def _measure_clearance(
     mechanism: Mechanism, moving: list[Part], fixed: list[Part], span: tuple[float, float], wanted: float
 ) -> tuple[float, bool]:
-    """Return the minimum distance of moving parts from fixed ones, and whether it reaches the required one."""
+    """Return the minimum distance of moving parts from fixed ones, and whether it reaches the required one.
+
+    If parts overlap the distance is negative: the depth, by which a part has to be shifted until it is outside.
+    """
     pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
     # Every pair must report its distance, because the answer contains the minimum.
     found = sweep_pairs(mechanism, [*moving, *fixed], pairs, *span, wanted, nearest="all")
-    return min(pair.least for pair in found), all(pair.keeps for pair in found)
+    least = min(pair.least for pair in found)
+    if least < 0.0:
+        least = min(least, -measure_penetration(mechanism, [*moving, *fixed], pairs, *span))
+    return least, all(pair.keeps for pair in found)
 
 
 def _build_walls(

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.gear.flanks import compute_corner_rounding
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.profile import draw_half_space, draw_outline
-from kinematics.gear.teeth import Gear, Mesh
+from kinematics.gear.teeth import Gear, Mesh, compute_corner_rounding
 
 GEARS = [
     Gear(30, 2.0),

@@ -10,9 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from kinematics.gear import shift_sums, shifting
-from kinematics.gear.flanks import Contact, compute_rack_form, compute_straight_depth
+from kinematics.gear.flanks import Contact, compute_rack_form
 from kinematics.gear.shifting import PairConstraints
-from kinematics.gear.teeth import Gear, Mesh
+from kinematics.gear.teeth import Gear, Mesh, compute_straight_depth
 
 
 def demands(angle: float, least: float, most: float, ratio: float, tip: float) -> PairConstraints:

@@ -8,9 +8,8 @@ from random import Random
 import pytest
 
 from kinematics.gear import shift_sums, shifting, splits
-from kinematics.gear.flanks import compute_straight_depth
 from kinematics.gear.shifting import MARGIN_RESOLUTION, MARGIN_TOLERANCE, PairConstraints
-from kinematics.gear.teeth import invert_involute_tangent
+from kinematics.gear.teeth import compute_straight_depth, invert_involute_tangent
 
 
 def drawn(rng: Random) -> tuple[int, int, PairConstraints]:

@@ -7,11 +7,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
 from kinematics.message import find_message, translate
+from service.answers.analysis import analyse
 from service.api.http.schemas import JobRequest
 from service.api.routes.batch_schemas import BatchRequest
 from service.api.routes.jobs import JobFilter
-from service.error_messages import describe_faults
-from service.refusals import refuse_invalid_body
+from service.error_messages import LIMITS_PAGE, describe_faults
+from service.refusals import Refusal, refuse_invalid_body
 from service.simulation.query import SimulationQuery
 from synthesis.analyses import list_families
 from synthesis.mechanisms.cam import GivenBarrelFollower
@@ -22,6 +23,7 @@ from tests.support.service.variations import variations
 MOTION = get_first_example("motion")
 CAM = get_first_example("cam")
 BATCH = {"problem": MOTION, "vary": [{"field": "/seed", "values": [1, 2]}]}
+EXAMPLE = '{"kind": "motion", "positions": [{"x": 0, "y": 0, "angle": 0}]}'
 ROD = {"name": "a", "joints": ["A"]}
 PYDANTIC_TYPES = {*get_args(ErrorType)} - {"value_error", "assertion_error"}
 
@@ -46,65 +48,82 @@ def limit_angle(angle: object) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("model", "body", "type_", "detail", "german"),
     [
-        (JobRequest, {}, "missing", "This field is required.", "Dieses Feld ist erforderlich."),
+        (JobRequest, {}, "missing", f"This field is required, for example {EXAMPLE}.",
+         f"Dieses Feld ist erforderlich, etwa {EXAMPLE}."),
         (JobRequest, {"problem": MOTION, "q": 1}, "extra_forbidden",
          "Unknown field; the fields are `problem` and `label`.",
          "Unbekanntes Feld; die Felder sind `problem` und `label`."),
         (JobRequest, {"problem": {"kind": "q"}}, "unknown_kind",
-         f"Kind must be given and be one of: {', '.join(KINDS)}.",
-         f"Das Feld kind muss angegeben sein und eines von diesen nennen: {', '.join(KINDS)}."),
-        (JobRequest, {"problem": 3}, "unknown_kind", "This must be an object.", "Dies muss ein Objekt sein."),
-        (JobRequest, build_job(positions=3), "list_type", "This must be a list.", "Dies muss eine Liste sein."),
-        (JobRequest, build_job(ground_line={"point": 3, "angle": 0.0}), "tuple_type", "This must be a list.",
-         "Dies muss eine Liste sein."),
-        (JobRequest, build_job(layout=3), "model_type", "This must be an object.", "Dies muss ein Objekt sein."),
-        (JobRequest, {"problem": {**CAM, "segments": [3]}}, "model_attributes_type", "This must be an object.",
-         "Dies muss ein Objekt sein."),
-        (BatchRequest, {**BATCH, "problem": 3}, "dict_type", "This must be an object.", "Dies muss ein Objekt sein."),
-        (JobRequest, {"problem": MOTION, "label": 3}, "string_type", "Input should be a valid string.",
+         f"Unknown; the permitted names are: {', '.join(KINDS)}.", f"Unbekannt; möglich sind: {', '.join(KINDS)}."),
+        (JobRequest, {"problem": {}}, "unknown_kind",
+         f"Give this field; it must be one of: {', '.join(KINDS)}.",
+         f"Dieses Feld angeben; möglich sind: {', '.join(KINDS)}."),
+        (JobRequest, {"problem": {"kind": "moton"}}, "unknown_kind",
+         f"Unknown; did you mean motion, parallel_motion? The permitted names are: {', '.join(KINDS)}.",
+         f"Unbekannt; ist motion, parallel_motion gemeint? Möglich sind: {', '.join(KINDS)}."),
+        (JobRequest, {"problem": {"kind": "compliant_gripper"}}, "unknown_kind",
+         f"The service does not do this; {LIMITS_PAGE} lists what it leaves out. The permitted names are: "
+         f"{', '.join(KINDS)}.",
+         f"Das leistet der Dienst nicht; {LIMITS_PAGE} nennt, was er auslässt. Möglich sind: {', '.join(KINDS)}."),
+        (JobRequest, {"problem": 3}, "unknown_kind", "Expected an object.", "Erwartet wird ein Objekt."),
+        (JobRequest, build_job(positions=3), "list_type",
+         'Expected a list, for example [{"x": 0, "y": 0, "angle": 0}].',
+         'Erwartet wird eine Liste, etwa [{"x": 0, "y": 0, "angle": 0}].'),
+        (JobRequest, build_job(ground_line={"point": 3, "angle": 0.0}), "tuple_type",
+         "Expected a list, for example [0, 0].", "Erwartet wird eine Liste, etwa [0, 0]."),
+        (JobRequest, build_job(layout=3), "model_type",
+         'Expected an object, for example {"link_width": 0, "pin_diameter": 0, "thickness": 0}.',
+         'Erwartet wird ein Objekt, etwa {"link_width": 0, "pin_diameter": 0, "thickness": 0}.'),
+        (JobRequest, {"problem": {**CAM, "segments": [3]}}, "model_attributes_type",
+         'Expected an object, for example {"motion": "dwell", "angle": 0}.',
+         'Erwartet wird ein Objekt, etwa {"motion": "dwell", "angle": 0}.'),
+        (BatchRequest, {**BATCH, "problem": 3}, "dict_type", 'Expected an object, for example {"name": 0}.',
+         'Erwartet wird ein Objekt, etwa {"name": 0}.'),
+        (JobRequest, {"problem": MOTION, "label": 3}, "string_type", "Expected a text.",
          "Erwartet wird ein Text."),
-        (JobRequest, build_job(seed=1.5), "int_type", "Input should be a valid integer.",
+        (JobRequest, build_job(seed=1.5), "int_type", "Expected an integer.",
          "Erwartet wird eine ganze Zahl."),
-        (JobFilter, {"limit": "x"}, "int_parsing", "Input should be a valid integer.",
+        (JobFilter, {"limit": "x"}, "int_parsing", "Expected an integer.",
          "Erwartet wird eine ganze Zahl."),
-        (JobFilter, {"limit": "9" * 5000}, "int_parsing_size", "Input should be a valid integer.",
+        (JobFilter, {"limit": "9" * 5000}, "int_parsing_size", "Expected an integer.",
          "Erwartet wird eine ganze Zahl."),
-        (JobRequest, limit_angle("x"), "float_type", "Input should be a valid number.", "Erwartet wird eine Zahl."),
-        (SimulationQuery, {"width": "x"}, "float_parsing", "Input should be a valid number.",
+        (JobRequest, limit_angle("x"), "float_type", "Expected a number.", "Erwartet wird eine Zahl."),
+        (SimulationQuery, {"width": "x"}, "float_parsing", "Expected a number.",
          "Erwartet wird eine Zahl."),
         (BatchRequest, {**BATCH, "vary": [{"field": "/seed", "from": float("nan"), "to": 1}]}, "finite_number",
-         "Input should be a finite number.", "Erwartet wird eine endliche Zahl."),
-        (JobRequest, build_job(include_failed=1), "bool_type", "Input should be a valid boolean.",
+         "Expected a finite number.", "Erwartet wird eine endliche Zahl."),
+        (JobRequest, build_job(include_failed=1), "bool_type", "Expected true or false.",
          "Erwartet wird true oder false."),
         (JobRequest, build_job(layout={"link_width": 0, "pin_diameter": 1, "thickness": 1}), "greater_than",
-         "Input should be greater than 0.", "Der Wert muss größer als 0 sein."),
-        (JobRequest, limit_angle(-1), "greater_than_equal", "Input should be greater than or equal to 0.",
+         "The value must be greater than 0.", "Der Wert muss größer als 0 sein."),
+        (JobRequest, limit_angle(-1), "greater_than_equal", "The value must be at least 0.",
          "Der Wert muss mindestens 0 sein."),
-        (JobRequest, limit_angle(90.0), "less_than", "Input should be less than 90.",
+        (JobRequest, limit_angle(90.0), "less_than", "The value must be less than 90.",
          "Der Wert muss kleiner als 90 sein."),
         (JobRequest, build_job(constraints={"max_link_ratio": 1e10}), "less_than_equal",
-         "Input should be less than or equal to 1000000000.", "Der Wert darf höchstens 1000000000 sein."),
-        (JobRequest, build_job(length_unit="km"), "literal_error", "Input should be 'mm', 'cm', 'm' or 'in'.",
-         "Erwartet wird 'mm', 'cm', 'm' oder 'in'."),
-        (GivenBarrelFollower, {"type": "q", "roller_radius": 1.0}, "literal_error", "Input should be 'barrel_roller'.",
+         "The value must be at most 1000000000.", "Der Wert darf höchstens 1000000000 sein."),
+        (JobRequest, build_job(length_unit="km"), "literal_error",
+         "Did you mean 'm'? Expected 'mm', 'cm', 'm' or 'in'.",
+         "Ist 'm' gemeint? Erwartet wird 'mm', 'cm', 'm' oder 'in'."),
+        (GivenBarrelFollower, {"type": "q", "roller_radius": 1.0}, "literal_error", "Expected 'barrel_roller'.",
          "Erwartet wird 'barrel_roller'."),
         (SkeletonSpec, {"joints": {"A": [0, 0]}, "links": [ROD, ROD], "input_link": "a"}, "too_short",
-         "Object should have at least 2 members, not 1.", "Das Objekt muss mindestens 2 Einträge haben, nicht 1."),
+         "The object must have at least 2 members, not 1.", "Das Objekt muss mindestens 2 Einträge haben, nicht 1."),
         (BatchRequest, {**BATCH, "vary": [{"field": "", "values": [1]}]}, "string_too_short",
-         "String should have at least 2 characters.", "Der Text muss mindestens 2 Zeichen haben."),
+         "The text must have at least 2 characters.", "Der Text muss mindestens 2 Zeichen haben."),
         (JobRequest, {"problem": MOTION, "label": "x" * 201}, "string_too_long",
-         "String should have at most 200 characters.", "Der Text darf höchstens 200 Zeichen haben."),
+         "The text must have at most 200 characters.", "Der Text darf höchstens 200 Zeichen haben."),
         (BatchRequest, {**BATCH, "vary": [{"field": "seed", "values": [1]}]}, "string_pattern_mismatch",
-         "String should match pattern '^(/([^~/]|~[01])*)+$'.",
+         "The text must match the pattern '^(/([^~/]|~[01])*)+$'.",
          "Der Text muss dem Muster '^(/([^~/]|~[01])*)+$' entsprechen."),
-        (BatchRequest, {**BATCH, "vary": []}, "too_short", "List should have at least 1 item, not 0.",
+        (BatchRequest, {**BATCH, "vary": []}, "too_short", "The list must have at least 1 item, not 0.",
          "Die Liste muss mindestens 1 Eintrag haben, nicht 0."),
-        (BatchRequest, {**BATCH, "metrics": ["size"] * 51}, "too_long", "List should have at most 50 items, not 51.",
+        (BatchRequest, {**BATCH, "metrics": ["size"] * 51}, "too_long", "The list must have at most 50 items, not 51.",
          "Die Liste darf höchstens 50 Einträge haben, nicht 51."),
         (JobRequest, build_job(ground_line={"point": [1.0, 2.0, 3.0], "angle": 0.0}), "too_long",
-         "List should have at most 2 items, not 3.", "Die Liste darf höchstens 2 Einträge haben, nicht 3."),
+         "The list must have at most 2 items, not 3.", "Die Liste darf höchstens 2 Einträge haben, nicht 3."),
         (JobRequest, build_job(dynamics={"speed_rpm": 1.0, "bodies": {str(n): {"mass": 0.0} for n in range(21)}}),
-         "too_long", "Object should have at most 20 members.", "Das Objekt darf höchstens 20 Einträge haben."),
+         "too_long", "The object must have at most 20 members.", "Das Objekt darf höchstens 20 Einträge haben."),
         (JobRequest, {"problem": {**CAM, "segments": [{}]}}, "union_tag_not_found", "The field 'motion' is required.",
          "Das Feld 'motion' ist erforderlich."),
         (JobRequest, {"problem": {**CAM, "segments": [{"motion": "hop"}]}}, "union_tag_invalid",
@@ -141,3 +160,54 @@ def test_no_text_of_pydantic_remains(name):
                 located = {**fault, "loc": ("body", *fault["loc"])}
                 ((_, detail),) = describe_faults([located], body, {"body": model})
                 assert fault["type"] not in PYDANTIC_TYPES or find_message(detail) is not None, fault
+
+
+@pytest.mark.parametrize(
+    ("mechanisms", "path", "detail"),
+    [
+        (["forbar"], "/problem/mechanisms/0", "Did you mean 'fourbar'? Expected 'fourbar', 'slider_crank', "),
+        (["forbar", "slider_crank"], "/problem/mechanisms/0", "Did you mean 'fourbar'? "),
+        (["xyz"], "/problem/mechanisms/0", "Expected 'fourbar', 'slider_crank', "),
+        ("fourbar", "/problem/mechanisms", "Expected 'auto', or a list, for example [\"fourbar\"]."),
+    ],
+)
+@pytest.mark.parametrize("kind", ["motion", "path", "function"])
+def test_a_misspelt_type_is_reported_once(kind, mechanisms, path, detail):
+    """Whatever groups the types form, their names are listed together, with the nearest."""
+    ((found, text),) = refuse({"problem": {**get_first_example(kind), "mechanisms": mechanisms}}).errors
+    assert found == path
+    assert text.startswith(detail)
+
+
+def test_a_body_without_its_wrapper_says_where_to_put_it():
+    refusal = refuse(MOTION)
+    assert refusal.errors == [("/problem", 'Put it into the field `problem`: {"problem": {"kind": "...", ...}}.')]
+    with pytest.raises(Refusal) as refused:
+        analyse({"type": "fourbar", "links": {}})
+    assert refused.value.errors == [
+        ("/mechanism", 'Put it into the field `mechanism`: {"mechanism": {"type": "...", ...}}.')
+    ]
+
+
+def test_an_unknown_type_of_mechanism_is_the_only_fault():
+    with pytest.raises(Refusal) as refused:
+        analyse({"mechanism": {"type": "planetary", "links": {}}})
+    ((path, detail),) = refused.value.errors
+    assert path == "/mechanism/type"
+    assert detail.startswith("Unknown; did you mean planetary_train")
+    assert all(f" {family}" in detail for family in ("fourbar", "cam", "gear_pair", "rotor"))
+
+
+def test_the_detail_is_the_first_fault_in_words():
+    assert refuse(build_job(seed="x")).detail == "/problem/seed: Expected an integer."
+    two = refuse(build_job(seed="x", max_designs="x"))
+    assert two.detail == "/problem/max_designs: Expected an integer. 1 other field is invalid."
+    assert translate(find_message(two.detail), "de") == (
+        "/problem/max_designs: Erwartet wird eine ganze Zahl. 1 weiteres Feld ist ungültig."
+    )
+
+
+def refuse(body: object) -> Refusal:
+    with pytest.raises(ValidationError) as refused:
+        JobRequest.model_validate(body)
+    return refuse_invalid_body(refused.value, body, JobRequest)

@@ -37,8 +37,8 @@ class Part(NamedTuple):
 
 
 OVERLAP_DEPTH = 1e-6
-"""Overlap, as a share of the size and in addition to the radii, assigned to intersecting cores: the true depth is not
-measured."""
+"""Overlap, as a share of the size and in addition to the radii, assigned to intersecting cores: a sweep only has to
+know that they intersect. :mod:`synthesis.verification.penetration` measures the depth."""
 
 
 @njit(**OPTIONS)

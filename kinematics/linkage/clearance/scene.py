@@ -137,9 +137,7 @@ class Scene:
         around, item = np.unique(centre + 1j * half, return_inverse=True)
         inputs, halves = around.real.copy(), around.imag.copy()
         pose = self._evaluate_pose(inputs)
-        shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
-        # The ground does not move: remove the rounding errors of the formula.
-        shift[0] = 0.0
+        shift = self._compute_shifts(pose)
         items = np.stack([pair, item], axis=1)
         cores = self._vertices, self._starts, self._links, self.pairs
         apart = measure_distances(*cores, items, pose.turn, shift, self._stretches)
@@ -153,6 +151,23 @@ class Scene:
     def has_position(self, inputs: Real) -> NDArray[np.bool_]:
         """Return whether the mechanism has a position at each input."""
         return self._evaluate_pose(inputs).valid
+
+    def carry_points(self, part: int, points: Complex, inputs: Real) -> Complex:
+        """Carry points with a part to inputs; return them in length units, shape (n, points), NaN without a position.
+
+        ``points``, shape (points,), are those of the reference configuration.
+        """
+        pose, link = self._evaluate_pose(inputs), self._links[part]
+        shift = self._compute_shifts(pose)[link][:, None]
+        moved = pose.turn[link][:, None] * ((points - self._origin) / self.size) + shift
+        return np.asarray(np.where(pose.valid[:, None], self._origin + self.size * moved, np.nan))
+
+    def _compute_shifts(self, pose: _Pose) -> Complex:
+        """Compute the displacements (links, n) that follow the rotations of links about the origin."""
+        shift = np.asarray(pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None])
+        # The ground does not move: remove the rounding errors of the formula.
+        shift[0] = 0.0
+        return shift
 
     def _evaluate_pose(self, inputs: Real) -> _Pose:
         """Drive the mechanism to inputs, shape (n,), and return its pose."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.arrays import Real
 from kinematics.linkage.planar.branches import Branch, compute_cycle, compute_cycle_on_branch, find_dyadic_branches
@@ -21,6 +22,17 @@ GRID_SIZE = 720
 END_OFFSETS = 4.0 ** -np.arange(17.0, 5.0, -1.0)
 """Distances of additional samples from the ends of a branch, as shares of its length, from 6e-11 on. Near a toggle
 angles go with the root of the distance, and rounding decides whether a position exists at the toggle itself."""
+
+SMOOTH_END_INDICES = 8, 11
+"""Indices into :data:`END_OFFSETS` of two samples, at 4e-6 and 2e-4 of the length. Towards a toggle rates grow with the
+inverse root of the distance, by 8 between these; towards a change point they stay nearly equal, and samples nearer than
+the first are dominated by rounding."""
+
+MAX_RATE_GROWTH = 3.0
+"""Growth of the rates between these two samples up to which an end is a change point and not a toggle."""
+
+MIN_RATE = 1e-9
+"""Share of the largest rate below which a rate counts as zero."""
 
 TOGGLE_TOLERANCE = 1e-8
 """Distance (radians, or task units along a slide) below which two toggles are the same."""
@@ -118,7 +130,8 @@ def find_limit_positions(
     They occur at the ends of the branch, or where a rate vanishes, which is found as a root. A value at an end is
     extrapolated from the nearest known position, at the distance d, by 2 d × rate. This is exact for a value that
     changes with the root of the distance from a toggle, up to terms proportional to d, which are negligible where the
-    value is smooth.
+    value is smooth. At a change point all values are smooth, but rounding spoils the nearest positions: there a farther
+    one is extrapolated by d × rate.
 
     Parameters
     ----------
@@ -156,8 +169,14 @@ def find_limit_positions(
     known = np.flatnonzero(np.isfinite(rate).all(axis=0))
     ends = np.empty((len(values), 0))
     if len(known) and not branch.full:
-        outer = known[[0, -1]]
-        ends = values[:, outer] + 2.0 * rate[:, outer] * (np.array([low, high]) - grid[outer])
+        smooth = _find_smooth_ends(rate)
+        outer, power = known[[0, -1]], np.where(smooth, 1.0, 2.0)
+        nearest = SMOOTH_END_INDICES[0]
+        outer = np.where(smooth, [nearest, len(grid) - 1 - nearest], outer)
+        ends = values[:, outer] + power * rate[:, outer] * (np.array([low, high]) - grid[outer])
+        if smooth.any():
+            kept = slice(nearest if smooth[0] else 0, len(grid) - nearest if smooth[1] else len(grid))
+            grid, values, rate = grid[kept], values[:, kept], rate[:, kept]
     changes = [(row, n) for row in range(len(rate)) for n in find_sign_changes(rate[row])]
     if changes:
         of = np.array([row for row, _ in changes]), np.arange(len(changes))
@@ -179,3 +198,12 @@ def find_limit_positions(
             value = value - 2.0 * np.pi * np.round(value[0] / (2.0 * np.pi))
         spans.append((float(value.min()), float(value.max())))
     return spans[: len(links)], spans[len(links) :]
+
+
+def _find_smooth_ends(rate: Real) -> NDArray[np.bool_]:
+    """Return whether all rates, shape (quantities, inputs), are smooth towards the first and the last input."""
+    near, far = (np.abs(rate[:, [k, -1 - k]]) for k in SMOOTH_END_INDICES)
+    # Values that do not change have rates of rounding only.
+    scale = np.nanmax(np.abs(rate), axis=1, initial=0.0)[:, None]
+    growing = near > MAX_RATE_GROWTH * np.maximum(far, MIN_RATE * scale)
+    return np.asarray(np.isfinite(near).all(axis=0) & ~growing.any(axis=0))

@@ -95,7 +95,7 @@ export function describeNearMiss(miss, problem, solve) {
         "span",
         { class: "bad" },
         `✗ ${toWords(gap.check)}`,
-        typeof gap.value === "number" && ` ${formatAmount(gap.value, gap, problem)}`,
+        typeof gap.value === "number" && ` ${describeValue(gap, gap.value, problem)}`,
         typeof gap.limit === "number" && `, ${t`required ${formatAmount(gap.limit, gap, problem)}`}`,
       ),
     ),
@@ -105,6 +105,15 @@ export function describeNearMiss(miss, problem, solve) {
       createElement("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text),
     ),
   );
+}
+
+/**
+ * Describe the value of a failed check: a negative distance from obstacles is the depth of a part in one of them.
+ * @param {Gap} gap @param {number} value @param {Problem} problem
+ */
+function describeValue(gap, value, problem) {
+  const inside = gap.check === "obstacles" && value < 0;
+  return inside ? t`overlap by ${formatAmount(-value, gap, problem)}` : formatAmount(value, gap, problem);
 }
 
 /**

@@ -201,6 +201,7 @@ export function createChecks(design, problem) {
           createElement("span", {}, check.passed ? "✓ " : "✗ "),
           toWords(check.name),
           typeof check.value === "number" && formatCheck(check, problem),
+          check.detail && createElement("span", { class: "note" }, ` ${check.detail}`),
           createElement("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`),
         ),
       ),

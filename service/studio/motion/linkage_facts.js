@@ -51,8 +51,7 @@ function distanceToLine({ x, y }, [px, py], [qx, qy]) {
  */
 export function createFacts(answer, skeleton, targets, unit) {
   const curve = couplerCurve(answer, skeleton);
-  const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
-  const least = angles.length ? Math.min(...angles) : null;
+  const least = answer.min_transmission_angle;
   const missed =
     "P" in skeleton.joints
       ? targets.map((target) =>

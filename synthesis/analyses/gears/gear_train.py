@@ -10,7 +10,6 @@ friction, and its torques must be consistent with them.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -29,7 +28,7 @@ from synthesis.analyses.gears.given_train import GivenGearTrain
 from synthesis.analyses.gears.loaded_meshes import Flow, LoadedMesh, list_loaded_meshes
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dynamics.request import METRES_PER_UNIT
-from synthesis.model.gears.answer import Helix, Ratio, find_undercut
+from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.request import ExactRatio
 from synthesis.model.gears.stages import build_train_stage
 from synthesis.model.gears.strength import RATED_STAGE_TYPES, StrengthMethod
@@ -336,16 +335,7 @@ def _describe_stage_gears(stage: TrainStage, train: OrdinaryTrain) -> list[JsonO
             _describe_dimensions(gear, back.is_undercut, math.cos(cone)) | {"base_diameter": None}
             for gear, back, cone in zip(cut, ordered, pair.cones, strict=True)
         ]
-    if stage.shifts != (0.0, 0.0):
-        # A shifted stage has a single mesh.
-        helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
-        undercut = list(find_undercut(meshes[0], helix))[:: 1 if stage.driver <= stage.driven else -1]
-    elif stage.kind == "helical":
-        undercut = [gear.is_undercut for gear in cut]
-    else:
-        # Teeth may be shortened, but undercut depends on the depth of the rack, which is always the full one.
-        undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
-    return [_describe_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
+    return [_describe_dimensions(gear, gear.is_undercut) for gear in cut]
 
 
 def _describe_dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> JsonObject:

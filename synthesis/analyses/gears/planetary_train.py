@@ -210,7 +210,9 @@ class TurningBody(Answer):
         description="Speed in the unit of the known speeds; null if it does not follow from them."
     )
     exact_speed: str | None = Field(description="Speed as a fraction, e.g. -5/2.")
-    torque: float | None = Field(description="External torque, positive in the direction of positive speeds.")
+    torque: float | None = Field(
+        description="External torque, positive in the direction of positive speeds; null for planets, which have none."
+    )
     power: float | None = Field(description="Torque times speed; positive if power enters.")
     angle: list[float] | None = Field(description="Angle from the position at input angle 0, degrees.")
     omega: list[float] | None = Field(description="rad/s")
@@ -248,6 +250,7 @@ class PlanetaryAnalysis(DrivenAnalysis):
     circulating_power: bool | None = Field(description="A warning: a member carries more power than is put in.")
     bodies: list[TurningBody]
     meshes: list[LoadedPlanetaryMesh]
+    notes: list[str] = Field(description="Names of fields without a value, with the reason.")
     shift_table: list[ShiftState] | None = optional_field(
         "Shift table, largest ratio first, if requested by `include`."
     )
@@ -311,9 +314,35 @@ def _analyze_train(request: PlanetaryAnalysisRequest) -> JsonObject:
             {**_describe_mesh(train, flow, k, unit), **({} if strong[k] is None else {"strength": strong[k]})}
             for k in range(len(train.meshes))
         ],
+        "notes": _describe_undefined(request, solution, ratio, flow),
         **asked,
         **describe_drift(ratio, request.wanted_ratio),
     }
+
+
+def _describe_undefined(
+    request: PlanetaryAnalysisRequest, solution: Speeds, ratio: Fraction | None, flow: PowerFlow | None
+) -> list[str]:
+    """Describe results that have no value, with the reason."""
+    mechanism, notes = request.mechanism, []
+    if solution.contradiction is not None:
+        notes.append(compose("analyses-speeds-contradict", body=solution.contradiction))
+    elif solution.open:
+        notes.append(compose("analyses-speeds-open", count=solution.open))
+    elif request.locked:
+        notes.append(compose("analyses-torques-of-clutches-unknown"))
+    elif flow is None:
+        notes.append(compose("analyses-torques-undetermined"))
+    elif flow.efficiency is None:
+        notes.append(compose("analyses-efficiency-without-power"))
+    if ratio is None and mechanism.input is not None and mechanism.output is not None:
+        if not solution.open and solution.contradiction is None:
+            notes.append(compose("analyses-ratio-of-resting-output"))
+    elif ratio is None:
+        notes.append(compose("analyses-ratio-without-ends"))
+    if request.speeds is not None or mechanism.input is None:
+        notes.append(compose("analyses-motion-of-given-speeds"))
+    return notes
 
 
 def _describe_body(

@@ -19,13 +19,11 @@ from kinematics.errors import DimensionError
 from kinematics.gear.flanks import (
     Contact,
     ShapedRing,
-    compute_rack_form,
-    compute_straight_depth,
     compute_tip_shortening,
 )
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.profile import draw_half_space
-from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Gear, Mesh
 from kinematics.message import compose
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.gears.gear_pair import MILLIMETRE, RAD_PER_S_PER_RPM
@@ -150,14 +148,9 @@ class GivenGearPair(Statement):
             # Without a flank above the base circle there is no involute.
             if not gear.internal and gear.tip_radius <= gear.base_radius:
                 raise MechanismError("/shift", compose(message))
-        # The straight flank of the rack ends above its rounded tip, and only this depth cuts the involute. The cosine
-        # converts it to modules of the plane of rotation.
-        depth = compute_straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
         ring = ShapedRing(two, self._choose_cutter_teeth) if self.internal else None
         contact = apply_tool_contact(Mesh(one, two, self.centre_distance), ring, angle)
-        # The rack undercuts when its straight flank reaches below the tangent point of the line of action.
-        cut, other = (compute_rack_form(gear, depth) < -LIMIT_TOLERANCE * one.module for gear in (one, two))
-        return RunningPair(contact, tight, shortening, ring, (cut, other and ring is None))
+        return RunningPair(contact, tight, shortening, ring, (one.is_undercut, two.is_undercut))
 
     def _build_gear(self, place: int, angle: float, phi: float) -> Gear:
         plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
@@ -394,14 +387,10 @@ def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> li
     # Working circles are larger than pitch circles by the ratio of the cosines, as the base circles stay the same.
     wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
     turns = speed, speed * given.teeth[0] / given.teeth[1] * (1.0 if given.internal else -1.0)
-    depth = compute_straight_depth(math.radians(given.pressure_angle), FULL_DEPTH_DEDENDUM)
     gears = []
     for place, gear in enumerate(pair.cut_gears):
         left, sliding = contact.margins[place], contact.specific_sliding[place]
         tip, form = gear.thickness_at(gear.tip_radius), pair.compute_form_radii[place]
-        sine = math.sin(gear.pressure_angle)
-        # The rack undercuts below the shift with which its straight flank ends at the tangent point, r sin²α.
-        least = depth - gear.pitch_radius * sine**2 / given.module
         gears.append(
             {
                 "teeth": given.teeth[place],
@@ -415,7 +404,7 @@ def _describe_gears(given: GivenGearPair, pair: RunningPair, speed: float) -> li
                 "form_diameter": 2.0 * form,
                 "tooth_thickness": gear.tooth_thickness,
                 "tip_thickness": None if math.isnan(tip) else tip,
-                "least_shift": None if gear.internal else least,
+                "least_shift": None if gear.internal else gear.least_shift / math.cos(gear.helix_angle),
                 "undercut": pair.undercut[place],
                 "involute_left": left,
                 "fillet_interference": left < -LIMIT_TOLERANCE * gear.module,

@@ -270,6 +270,10 @@ class LinkageAnalysis(Answer):
     transmission_angles: dict[str, list[float | None]] = Field(
         description="Transmission angle at each dyad and each leg of a triad, by link."
     )
+    min_transmission_angle: float | None = Field(
+        description="Minimum transmission angle over the motion, between the positions too, as in the metrics of "
+        "designs: 0 if the motion reaches a toggle. Null as `transmission_angle` is."
+    )
     torque_ratio: dict[str, list[float | None]] = Field(
         description="Output torque over input torque without losses: the mechanical advantage of each grounded link. "
         "For a driving slider the input torque is a force."

@@ -19,11 +19,15 @@ from kinematics.linkage.planar.instant_centers import find_instant_centers
 from kinematics.linkage.planar.limits import find_limit_positions, find_reference_branch, list_toggles
 from kinematics.linkage.planar.link_points import link_point
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
-from kinematics.linkage.planar.program import build_program
+from kinematics.linkage.planar.program import build_program, compute_unit_frame
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from kinematics.message import compose
 from synthesis.analyses.linkages.cycle import list_branches
 from synthesis.analyses.linkages.fourbar import extract_fourbar
 from synthesis.model.json_object import JsonObject
+
+MAX_RATIO = 1e12
+"""Ratio of speeds beyond which the output is at rest: its speed is that of rounding."""
 
 BRANCH_SAMPLE_COUNT = 181
 """Number of samples on a branch at which its joints are listed: enough for a smooth curve on a screen."""
@@ -62,6 +66,17 @@ def analyze_motion(
     transmission = {link: _list_values(np.degrees(np.arcsin(np.minimum(sine, 1.0)))) for link, sine in sines.items()}
     with np.errstate(invalid="ignore"):
         least = np.degrees(np.arcsin(np.minimum(np.stack(list(sines.values())).min(axis=0), 1.0))) if sines else None
+    ratios = {
+        "torque_ratio": _compute_ratios(paced, paced.angles, _list_grounded_links(mechanism), _link_scale(mechanism)),
+        "force_ratio": _compute_ratios(paced, paced.slides, _list_output_slides(mechanism), _slide_scale(mechanism)),
+    }
+    described = _describe_circuits(mechanism, tracked, _describe_undefined(mechanism, sines))
+    notes = [*described["notes"], *_describe_dead_centres(paced, ratios)]
+    if len(at) > 1:
+        notes.append(compose("analyses-instant-centers-of-one-position"))
+    classification = _classify_linkage(mechanism)
+    if classification["grashof"] == "change_point":
+        notes.append(compose("analyses-limits-at-change-point"))
     return {
         "input_angle": at.tolist(),
         "valid": motion.valid.tolist(),
@@ -71,12 +86,30 @@ def analyze_motion(
         "slides": {name: _describe_travel(jet) for name, jet in motion.slides.items()},
         "transmission_angle": [math.nan] * len(at) if least is None else _list_values(least),
         "transmission_angles": transmission,
-        "torque_ratio": _compute_ratios(paced, paced.angles, _list_grounded_links(mechanism)),
-        "force_ratio": _compute_ratios(paced, paced.slides, _list_output_slides(mechanism)),
+        "min_transmission_angle": _find_min_transmission_angle(mechanism, inputs, motion),
+        **ratios,
         "instant_centers": _list_instant_centers(mechanism, paced) if len(at) == 1 else {},
-        "classification": _classify_linkage(mechanism),
-        **_describe_circuits(mechanism, tracked, _describe_undefined(mechanism, sines)),
+        "classification": classification,
+        **described,
+        "notes": notes,
     }
+
+
+def _find_min_transmission_angle(mechanism: Mechanism, inputs: Real, motion: MechanismMotion) -> float:
+    """Find the minimum transmission angle between the first and the last input, degrees; NaN if there is none.
+
+    It is the measure of the metrics and checks of designs: 0 if the motion reaches a toggle.
+    """
+    if not motion.sines:
+        return math.nan
+    if len(inputs) == 1:
+        sine = np.abs(np.stack(list(motion.sines.values()))).min()
+        return math.degrees(math.asin(min(float(sine), 1.0)))
+    # A motion over time may turn back and repeat inputs.
+    low, high = float(inputs.min()), float(inputs.max())
+    grid = np.linspace(low, high, max(len(inputs), GRID_SIZE)) if low < high else np.array([low, low])
+    angles = find_min_transmission_angles(lambda at: drive(mechanism, at, order=0), grid)
+    return math.degrees(min(angles.values()))
 
 
 def _list_values(values: Real) -> list[float]:
@@ -116,17 +149,40 @@ def _describe_travel(jet: Real) -> dict[str, list[float]]:
     return dict(zip(("position", "velocity", "acceleration", "jerk"), map(_list_values, jet), strict=True))
 
 
-def _compute_ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
-    """Compute the speed of the input over that of each output.
+def _compute_ratios(
+    motion: MechanismMotion, moved: dict[str, Real], outputs: list[str], scale: float
+) -> dict[str, list[float]]:
+    """Compute the speed of the input over that of each output; NaN where the output is at rest, to rounding.
 
-    By virtual work this is the ratio of the torque or force on the output to that of the input.
+    By virtual work this is the ratio of the torque or force on the output to that of the input. ``scale`` is the unit
+    of the ratio: 1 for two rotations or two translations, otherwise the size of the mechanism or its inverse.
     """
     ratios = {}
     for name in outputs:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             ratio = motion.input[1] / moved[name][1]
-        ratios[name] = _list_values(np.where(np.isfinite(ratio), ratio, np.nan))
+        ratios[name] = _list_values(np.where(np.abs(ratio) < MAX_RATIO * scale, ratio, np.nan))
     return ratios
+
+
+def _link_scale(mechanism: Mechanism) -> float:
+    return float(compute_unit_frame(mechanism).size) if mechanism.has_slide_input else 1.0
+
+
+def _slide_scale(mechanism: Mechanism) -> float:
+    return 1.0 if mechanism.has_slide_input else 1.0 / float(compute_unit_frame(mechanism).size)
+
+
+def _describe_dead_centres(motion: MechanismMotion, ratios: Mapping[str, dict[str, list[float]]]) -> list[str]:
+    """Describe the ratios that are missing at positions with a known speed of the output."""
+    notes = []
+    for field, listed in ratios.items():
+        moved = motion.angles if field == "torque_ratio" else motion.slides
+        # At a toggle the speed is unknown, and so is the ratio.
+        resting = [name for name, values in listed.items() if (np.isnan(values) & np.isfinite(moved[name][1])).any()]
+        if resting:
+            notes.append(compose("analyses-output-at-rest", field=field, names=", ".join(resting)))
+    return notes
 
 
 def _list_instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, dict[str, list[float]]]:

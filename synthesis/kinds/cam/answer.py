@@ -59,6 +59,10 @@ ACTIVE_TOLERANCE = 1e-6
 """Relative distance to a constraint within which the constraint counts as active."""
 
 
+DECIDING_TOLERANCE = 5e-3
+"""Distance of a measured value from its limit, as a share, up to which the limit counts as setting the size."""
+
+
 def describe_segments(problem: CamProblem, composed: Composition) -> list[CamSegment]:
     """Return every segment with its law, its cam angles and its exact peaks."""
     segments, start = [], 0.0
@@ -286,6 +290,7 @@ def build_result(
     circle, length = radius
     if passed:
         summary = [compose("cam-follows-program", circle=circle, radius=f"{length:.6g}", unit=problem.length_unit)]
+        summary += _describe_deciding_defaults(problem, design)
         if design.optimality.bound is not None and design.optimality.gap is not None:
             gap = 100.0 * design.optimality.gap
             summary.append(compose("cam-is-near-minimum", criterion=problem.minimize, gap=f"{gap:.2g}"))
@@ -305,8 +310,7 @@ def build_result(
         ]
         if "meets_accelerations" in failed and problem.limits.jerk is None:
             summary.append(compose("cam-acceleration-for-instant"))
-    # A given radius is not the result of an optimization.
-    stated = any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
+    stated = _has_given_size(problem)
     given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
     # If the laws are given and the cam is proven to be the smallest, every cam breaks a failed limit on size.
     proof = given and size.proven and failed == ["size"]
@@ -317,6 +321,28 @@ def build_result(
         ),
         summary=join_messages(summary),
     )
+
+
+def _describe_deciding_defaults(problem: CamProblem, design: CamDesign | BarrelCamDesign) -> list[str]:
+    """Describe the limits that the client has not given and that the size of the cam just keeps."""
+    if _has_given_size(problem):
+        return []
+    fields = {"curvature_ratio": "curvature_ratio", "pressure_angle": "pressure_angle"}
+    if problem.limits.pressure_angle_fall is None:
+        fields["pressure_angle_fall"] = "pressure_angle"
+    deciding = {}
+    for check in design.verification.checks:
+        field = fields.get(check.name)
+        if field is None or field in problem.limits.model_fields_set or check.value is None or not check.limit:
+            continue
+        if abs(check.value / check.limit - 1.0) <= DECIDING_TOLERANCE:
+            deciding[field] = f"{getattr(problem.limits, field):g}"
+    return [compose("cam-size-set-by-default", limit=name, value=value) for name, value in deciding.items()]
+
+
+def _has_given_size(problem: CamProblem) -> bool:
+    """Return whether a radius is given, which then is not the result of an optimization."""
+    return any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
 
 
 def _describe_method(composed: Composition, has_fixed_size: bool) -> str:

@@ -91,6 +91,8 @@ cam-follows-program =
         [base] Grundkreisradius
        *[cylinder] Zylinderradius
     } von { $radius } { $unit } folgt dem Bewegungsgesetz.
+# $limit ist ein Feld von `limits`.
+cam-size-set-by-default = Der Radius folgt aus { $limit } { $value }, einer Vorgabe.
 # $checks sind Namen von Prüfungen.
 cam-fails-checks =
     Die kleinste gefundene Kurvenscheibe mit einem { $circle ->

@@ -91,6 +91,8 @@ cam-follows-program =
         [base] base radius
        *[cylinder] cylinder radius
     } of { $radius } { $unit } follows the program.
+# $limit is a field of `limits`.
+cam-size-set-by-default = The radius is set by { $limit } { $value }, a default.
 # $checks are names of checks.
 cam-fails-checks =
     The smallest cam found, with a { $circle ->

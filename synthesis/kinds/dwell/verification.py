@@ -19,6 +19,7 @@ from kinematics.linkage.planar.branches import FULL_TURN, compute_cycle_on_branc
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.refined_extremes import find_extremes, find_min_transmission_angles, find_minimum_near
 from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, PlacedDwell, Rest
 from synthesis.kinds.dwell.motion.rests import MeasuredRest, OutputCycle, find_placed_rests, find_rests
 from synthesis.kinds.dwell.problem import PLACE_TOLERANCE, DwellProblem
@@ -36,7 +37,6 @@ from synthesis.verification.measures import (
     measure_linkage,
 )
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import find_extremes, find_min_transmission_angles, find_minimum_near
 
 GRID_STEP_COUNT = 2880
 """Number of crank angles of the turn: every eighth of a degree."""

@@ -417,3 +417,7 @@ motion-no-requested-type-found = Von den verlangten Getriebearten wurde kein Get
 
 motion-progress-adding-drivers = Antriebszweischläge werden ergänzt
 motion-progress-driving-best-pairs = die besten Paare werden durchgefahren
+
+# Detail of a check
+
+motion-exact-positions-only = Betrifft { $exact } von { $count } Positionen; die übrigen sind ausgeglichen und werden um bis zu { $distance } und { $angle }° verfehlt.

@@ -395,3 +395,7 @@ motion-no-requested-type-found = No linkage of the requested types was found.
 
 motion-progress-adding-drivers = adding driver dyads
 motion-progress-driving-best-pairs = driving the best pairs
+
+# Detail of a check
+
+motion-exact-positions-only = Covers { $exact } of { $count } positions; the others are fitted, and missed by up to { $distance } and { $angle }°.

@@ -15,6 +15,7 @@ import numpy as np
 from kinematics.arrays import Complex, Real
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles, list_full_turn
 from synthesis.analyses.linkages.cycle import find_cycle
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionMetrics
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
@@ -35,7 +36,6 @@ from synthesis.verification.measures import (
     measure_reach,
 )
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles, list_full_turn
 
 TRANSLATION_TOLERANCE = 1e-9
 """Maximum rotation of the body, radians, and maximum distance of P from the curve, as a share of the curve's size."""

@@ -62,6 +62,9 @@ quick_return-designs-found =
     } ein gemessenes Zeitverhältnis von { $ratio }. Der beste kleinste Übertragungswinkel beträgt { $angle }° ({ $type }).
 quick_return-no-design-exists = Es gibt keinen Entwurf.
 quick_return-no-design-found = Es wurde kein Entwurf gefunden.
+quick_return-transmission-bound =
+    Eine Schwinge mit einem Schwingwinkel von { $swing }° hat einen Übertragungswinkel unter { $bound }°, 90° minus dem
+    halben Schwingwinkel.
 quick_return-type-without-range =
     { $type }: Ein Zeitverhältnis von { $ratio } ist nicht erreichbar; mit diesem Abtrieb gibt es keines ({ $reason }).
 quick_return-ratio-out-of-range =

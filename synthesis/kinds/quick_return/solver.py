@@ -14,7 +14,7 @@ from typing import NamedTuple
 from kinematics.message import compose, join_messages
 from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider, slotted_link
 from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMechanisms, QuickReturnResult, RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.problem import ROCKER_TYPES, QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import LENGTH_REASONS, CandidateLog
@@ -80,6 +80,7 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
     complete = all(not reach.reaches or TYPE_FUNCTIONS[reach.type].proven for reach in ranges) and _is_proven(
         sifting.rejected
     )
+    complete |= _find_transmission_bound(problem) is not None
     return QuickReturnResult(
         designs=sifting.select_designs(partial(_select_designs, problem)),
         search=sifting.build_search("quick_return", complete=complete),
@@ -96,6 +97,19 @@ def _place_mechanism(problem: QuickReturnProblem, mechanism: QuickReturnMechanis
     sized = not problem.slides and problem.rocker_length is None
     turned = problem.ground_angle is None
     return place_mechanism(problem.constraints, mechanism, list_link_lengths(mechanism), sized=sized, turned=turned)
+
+
+def _find_transmission_bound(problem: QuickReturnProblem) -> float | None:
+    """Return the bound of the transmission angle, degrees, if the problem requires more; None otherwise.
+
+    A rocker of swing ψ is that of a crank-rocker, alone or behind a drag link. Its transmission angle is below
+    90° − ψ/2, which it approaches with a long coupler.
+    """
+    demanded = problem.constraints.min_transmission_angle
+    if demanded is None or problem.swing_angle is None or set(problem.types) - set(ROCKER_TYPES):
+        return None
+    bound = 90.0 - 0.5 * problem.swing_angle
+    return bound if demanded >= bound else None
 
 
 def _is_proven(rejected: Counter[str]) -> bool:
@@ -150,6 +164,11 @@ def _describe_result(
         )
     else:
         lines.insert(0, compose("quick_return-no-design-exists" if complete else "quick_return-no-design-found"))
+        bound = _find_transmission_bound(problem)
+        if bound is not None:
+            lines.append(
+                compose("quick_return-transmission-bound", swing=f"{problem.swing_angle:g}", bound=f"{bound:g}")
+            )
         lines.append(sifting.describe_reasons().lstrip())
     return join_messages(lines)
 

@@ -18,6 +18,7 @@ from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism
 from kinematics.linkage.planar.strokes import Strokes, find_strokes
+from kinematics.linkage.refined_extremes import find_min_transmission_angles, list_full_turn
 from synthesis.kinds.quick_return.design import (
     DragLinkMechanism,
     LimitPosition,
@@ -39,7 +40,6 @@ from synthesis.verification.measures import (
     measure_reach,
 )
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import find_min_transmission_angles, list_full_turn
 
 RATIO_TOLERANCE = 1e-9
 """Maximum relative error of the measured time ratio; rounding leaves some 1e-14."""

@@ -17,6 +17,7 @@ from kinematics.arrays import Real
 from kinematics.errors import DimensionError, MechanismError
 from kinematics.linkage.fourbar import BarkerClass, barker_class, find_transmission_extremes, positions, stays_on_branch
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.refined_extremes import find_minimum_near
 from kinematics.linkage.steering import compute_outer_angle
 from synthesis.kinds.steering.design import (
     DavisMechanism,
@@ -34,7 +35,6 @@ from synthesis.verification.checks import check_maximum
 from synthesis.verification.constraints import check_constraints
 from synthesis.verification.measures import list_link_lengths, measure_linkage
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import find_minimum_near
 
 SAMPLE_COUNT = 2049
 """Number of inputs from lock to lock, half of them on each side of the straight position: 64 per reported position."""

@@ -18,6 +18,12 @@ from numpy.typing import NDArray
 from kinematics.arrays import Real
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.refined_extremes import (
+    GRID_SIZE,
+    find_extremes,
+    find_min_transmission_angles,
+    list_full_turn,
+)
 from synthesis.kinds.straight_line.design import ExactLineMechanism, LinePoint, StraightLineDesign, StraightLineMetrics
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.model.answer import Check, Verification
@@ -35,12 +41,6 @@ from synthesis.verification.measures import (
     measure_reach,
 )
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import (
-    GRID_SIZE,
-    find_extremes,
-    find_min_transmission_angles,
-    list_full_turn,
-)
 
 REACH_TOLERANCE = 1e-9
 """Maximum distance of P from the ends of the line, along it, and from an exact line: a share of the length."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 import itertools
 import math
 from fractions import Fraction
-from typing import NamedTuple, Self
+from typing import Self
 
 from pydantic import Field
 
-from kinematics.gear.flanks import Contact, ShapedRing, compute_rack_form, compute_straight_depth
+from kinematics.gear.flanks import Contact, ShapedRing
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.profile import find_involute_start
-from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM, Gear, Mesh, find_saving_shift
+from kinematics.gear.teeth import Gear, Mesh, find_saving_shift
 from kinematics.gear.train import OrdinaryTrain, StageKind, TrainStage
 from synthesis.model.answer import Answer, optional_field
 from synthesis.model.dimension import Angle, Length
@@ -145,23 +145,6 @@ def apply_tool_contact(mesh: Mesh, ring: ShapedRing | None = None, helix_angle: 
     return Contact(mesh, (find_involute_start(mesh.pinion, helix_angle), ends))
 
 
-class Helix(NamedTuple):
-    """Pressure angle in the normal plane, and helix angle; radians."""
-
-    pressure_angle: float
-    helix_angle: float
-
-
-def find_undercut(mesh: Mesh, helix: Helix | None = None) -> tuple[bool, bool]:
-    """Return whether the rack of full-depth teeth undercuts the pinion, and whether it undercuts the gear."""
-    angle = mesh.pinion.pressure_angle if helix is None else helix.pressure_angle
-    depth = compute_rack_depth(angle, 0.0 if helix is None else helix.helix_angle)
-    one, two = (
-        compute_rack_form(gear, depth) < -LIMIT_TOLERANCE * mesh.centre_distance for gear in (mesh.pinion, mesh.gear)
-    )
-    return one, two
-
-
 def is_fillet_reached(mesh: Mesh) -> bool:
     """Return whether contact extends below an involute, as cut by a rack or, for a ring, by the default cutter."""
     ring = shape_ring(mesh) if mesh.gear.internal else None
@@ -173,22 +156,13 @@ def shape_ring(mesh: Mesh) -> ShapedRing:
     return ShapedRing(mesh.gear, int(choose_cutter_teeth(mesh.gear.teeth)))
 
 
-def compute_rack_depth(pressure_angle: float, helix_angle: float = 0.0) -> float:
-    """Compute the depth of the straight flank of the full-depth rack below its reference line, in modules.
-
-    Angles are in radians. For helical teeth, ``pressure_angle`` and the rack are those of the normal plane, while the
-    module is that of the plane of rotation.
-    """
-    return compute_straight_depth(pressure_angle, FULL_DEPTH_DEDENDUM) * math.cos(helix_angle)
-
-
-def describe_fitted_mesh(stage: int, driver: int, driven: int, mesh: Mesh, helix: Helix | None = None) -> MeshGeometry:
+def describe_fitted_mesh(stage: int, driver: int, driven: int, mesh: Mesh) -> MeshGeometry:
     """Describe a mesh with fitted teeth; contact in a fillet also counts as interference."""
-    contact = apply_tool_contact(mesh, helix_angle=0.0 if helix is None else helix.helix_angle)
+    contact = apply_tool_contact(mesh, helix_angle=mesh.pinion.helix_angle)
     slack = LIMIT_TOLERANCE * mesh.centre_distance
     one, two = (mesh.pinion, mesh.gear) if driver <= driven else (mesh.gear, mesh.pinion)
     sliding = contact.specific_sliding if driver <= driven else contact.specific_sliding[::-1]
-    full = 1.0 if helix is None else math.cos(helix.helix_angle)
+    full = math.cos(mesh.pinion.helix_angle)
     return MeshGeometry(
         stage=stage,
         driver=driver,
@@ -196,7 +170,7 @@ def describe_fitted_mesh(stage: int, driver: int, driven: int, mesh: Mesh, helix
         centre_distance=mesh.centre_distance,
         contact_ratio=mesh.contact_ratio,
         interferes=min(*contact.margins, *contact.reaches) < -slack,
-        undercut=any(find_undercut(mesh, helix)),
+        undercut=mesh.pinion.is_undercut or mesh.gear.is_undercut,
         working_pressure_angle=math.degrees(mesh.pressure_angle),
         tip_diameter=GearLengths(driver=2.0 * one.tip_radius, driven=2.0 * two.tip_radius),
         tip_shortening=(full - one.addendum) * one.module,
@@ -224,8 +198,7 @@ def describe_meshes(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeom
         shifted = stage.kind not in ("internal", "bevel") and (fitted or stage.shifts != (0.0, 0.0))
         for (driver, driven), mesh in zip(itertools.pairwise(stage.gears), meshes, strict=True):
             if shifted:
-                helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
-                geometry = describe_fitted_mesh(number, driver, driven, mesh, helix)
+                geometry = describe_fitted_mesh(number, driver, driven, mesh)
             else:
                 geometry = _describe_standard_mesh(number, driver, driven, mesh, math.cos(stage.helix_angle))
             found.append(geometry.model_copy(update=_describe_stage_type(stage, mesh, train.pressure_angle)))
@@ -285,15 +258,15 @@ def _describe_stage_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -
 def _describe_worm_mesh(number: int, stage: TrainStage, pressure_angle: float) -> MeshGeometry:
     """Describe a worm and its gear in the middle plane, where the worm is identical to the rack that cuts the gear."""
     worm = stage.worm(pressure_angle)
-    pair, undercut = worm.dimensions, worm.gear.is_undercut
+    pair = worm.dimensions
     return MeshGeometry(
         stage=number,
         driver=stage.driver,
         driven=stage.driven,
         centre_distance=worm.centre_distance,
         contact_ratio=worm.contact_ratio,
-        interferes=undercut,
-        undercut=undercut,
+        interferes=not worm.is_free_of_interference,
+        undercut=worm.gear.is_undercut,
         type="worm",
         pitch_diameter=GearLengths(driver=pair.worm_diameter, driven=pair.gear_diameter),
         lead=pair.lead,

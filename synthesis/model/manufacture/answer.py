@@ -15,7 +15,7 @@ def _is_empty(listed: object) -> bool:
 
 
 class Yield(Answer):
-    """Sampled share of manufactured linkages that are good."""
+    """Sampled share of manufactured linkages that are good, with the play of their pins if these have a clearance."""
 
     value: float
     low: float = Field(description="Lower end of the interval that contains the yield with 99 % confidence.")

@@ -83,7 +83,7 @@ def test_at_most_twenty_faults_are_listed(client):
 def test_what_has_to_be_a_list_is_told_so(client):
     _, problem = refused(client, raw('{"kind":"motion","positions":3}'))
     assert [(each["path"], each["detail"]) for each in problem["errors"]] == [
-        ("/problem/positions", "This must be a list.")
+        ("/problem/positions", 'Expected a list, for example [{"x": 0, "y": 0, "angle": 0}].')
     ]
 
 

@@ -145,3 +145,25 @@ def test_faults(change: dict[str, Any], path: str) -> None:
 def test_ill_formed_trains_are_refused(mechanism: dict[str, Any]) -> None:
     with pytest.raises(ValidationError):
         parse_request({"mechanism": mechanism})
+
+
+@pytest.mark.parametrize("pressure_angle", [14.5, 17.5, 20.0, 25.0, 30.0])
+@pytest.mark.parametrize("helix_angle", [0.0, 20.0])
+def test_undercut_is_that_of_the_pair_at_every_angle(pressure_angle: float, helix_angle: float) -> None:
+    """One rule, that of the rounded rack: 31 teeth at 14.5° are not undercut, 9 teeth at 30° are."""
+    for teeth in range(8, 34):
+        stage: dict[str, Any] = {"driver": teeth, "driven": 60, "module": 2.0}
+        if helix_angle:
+            stage |= {"type": "helical", "helix_angle": helix_angle}
+        train = analysed([stage], given={"pressure_angle": pressure_angle})
+        pair = {
+            "type": "gear_pair",
+            "teeth": [teeth, 60],
+            "module": 2.0,
+            "helix_angle": helix_angle,
+            "pressure_angle": pressure_angle,
+        }
+        told = parse_request({"mechanism": pair}).build_answer()["gears"][0]["undercut"]
+        assert (train.gears[0].undercut, train.meshes[0].undercut) == (told, told), teeth
+        if not helix_angle and (pressure_angle, teeth) in ((14.5, 31), (30.0, 9)):
+            assert told == (teeth == 9)

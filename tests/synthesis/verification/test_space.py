@@ -161,3 +161,5 @@ def test_where_nothing_fits_the_nearest_miss_tells_by_how_much():
     assert not result.designs
     gaps = {gap.check: gap for gap in result.nearest_miss.gaps}
     assert gaps["box"].value > 0.0 or gaps["obstacles"].value < 0.0
+    if gaps["obstacles"].value < 0.0:
+        assert f"overlaps an obstacle by {-gaps['obstacles'].value:.4g} mm" in result.summary

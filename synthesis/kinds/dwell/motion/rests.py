@@ -19,8 +19,8 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.optimize import brentq
 
 from kinematics.arrays import Real
+from kinematics.linkage.refined_extremes import REFINEMENT_COUNT, SAMPLE_COUNT, find_minimum_near
 from synthesis.kinds.dwell.problem import PLACE_TOLERANCE, RequestedDwell
-from synthesis.verification.refined_extremes import REFINEMENT_COUNT, SAMPLE_COUNT, find_minimum_near
 
 STEP_ROUNDING = 1e-9
 """Rounding of an angle that is a whole number of grid steps, in steps."""

@@ -25,13 +25,13 @@ from kinematics.linkage.fourbar import (
 )
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from kinematics.linkage.slider_crank import range as slider_range
 from synthesis.model.linkage.answer import FourbarMechanism, SixbarMechanism, SliderCrankMechanism
 from synthesis.model.linkage.conversion import build_driven_fourbar, to_complex
 from synthesis.verification.branch_drive import MechanismOnBranch
 from synthesis.verification.measures import ROTATING_INPUT_CLASSES, classify_inner_fourbar
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles
 
 RANGE_TOLERANCE = 1e-9
 """Tolerance, radians, of a range at the end of its branch; it covers rounding."""

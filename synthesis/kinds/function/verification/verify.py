@@ -18,6 +18,7 @@ from scipy.integrate import simpson
 
 from kinematics.arrays import Real
 from kinematics.errors import DimensionError
+from kinematics.linkage.refined_extremes import find_minimum_near
 from synthesis.kinds.function.design import (
     Dials,
     ErrorCurve,
@@ -38,7 +39,6 @@ from synthesis.model.linkage.conversion import build_driven_fourbar
 from synthesis.verification.checks import REACHES_TARGETS, TARGET_TOLERANCE, check_error, check_targets_reached
 from synthesis.verification.constraints import check_constraints
 from synthesis.verification.measures import list_link_lengths, measure_linkage
-from synthesis.verification.refined_extremes import find_minimum_near
 
 DENSE_SAMPLE_COUNT = 2001
 """Number of inputs over the range at which the structural error is measured."""

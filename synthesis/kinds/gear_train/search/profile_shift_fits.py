@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 
 from kinematics.arrays import Integers
 from kinematics.gear import shift_sums, shifting
-from kinematics.gear.flanks import compute_min_shift, compute_straight_depth
 from kinematics.gear.shifting import PairConstraints
-from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
+from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM, compute_min_shift, compute_straight_depth
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search.kernels import DISTANCE_TOLERANCE
 from synthesis.kinds.gear_train.statement.stages import RequestedStage

@@ -73,8 +73,8 @@ def _find_worms(problem: GearTrainProblem, stage: RequestedStage, most: int) -> 
     quotient = stage.get_or_default("diameter_quotient")
     found = np.zeros((most + 1, most + 1), np.bool_)
     for driver, driven in stage.list_given_pairs():
-        gear = WormDrive(driver, driven, 1.0, quotient, math.radians(problem.pressure_angle)).gear
-        found[driver, driven] = problem.interference == "report" or not gear.is_undercut
+        drive = WormDrive(driver, driven, 1.0, quotient, math.radians(problem.pressure_angle))
+        found[driver, driven] = problem.interference == "report" or drive.is_free_of_interference
     return found
 
 

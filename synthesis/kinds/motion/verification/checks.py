@@ -10,11 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.message import compose
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.statement.dyad_choices import DyadChoices
 from synthesis.kinds.motion.task.target_poses import TargetPoses
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage.answer import LinkageDesign, LinkageMechanism, LinkageMetrics, Target
+from synthesis.results.remarks import write_quantity
 from synthesis.verification.body_motion import BodyMotion
 from synthesis.verification.checks import CHOICE_TOLERANCE, check_error, check_maximum, check_targets_reached
 from synthesis.verification.constraints import check_constraints
@@ -128,7 +130,7 @@ def build_linkage_design(
         targets=_list_targets(inputs, target, driven, slides=slides),
         verification=Verification.from_checks(
             [
-                *_check_motion(target, driven, on_circuit),
+                *_check_motion(problem, target, driven, on_circuit),
                 *_check_choices(problem, target, driven),
                 *check_constraints(problem.constraints, measures, driven.fixed_pivots, driven.moving_pivots),
                 *own,
@@ -162,18 +164,32 @@ def _list_targets(inputs: Real, target: TargetPoses, driven: DrivenLinkage, *, s
     ]
 
 
-def _check_motion(target: TargetPoses, driven: DrivenLinkage, on_circuit: bool) -> list[Check]:
+def _check_motion(problem: MotionProblem, target: TargetPoses, driven: DrivenLinkage, on_circuit: bool) -> list[Check]:
     """Check the task itself: exact coordinates are met, others are within tolerance, all on one circuit."""
     checks = []
     if target.exact_mask.any():
         # Only exact coordinates count here; tolerances have a check of their own.
         held = np.where(target.exact_mask, driven.offsets, 0.0)
-        checks.append(check_targets_reached(float(target.residuals(held).max())))
+        reached = check_targets_reached(float(target.residuals(held).max()))
+        checks.append(reached.model_copy(update={"detail": _describe_fitted_positions(problem, target, driven)}))
     tolerated = np.isfinite(target.limits) & ~target.exact_mask
     if tolerated.any():
         used = float(np.max(np.abs(driven.offsets[tolerated]) / target.limits[tolerated]))
         checks.append(check_maximum("within_tolerance", used, 1.0))
     return [*checks, Check(name="same_circuit", passed=on_circuit)]
+
+
+def _describe_fitted_positions(problem: MotionProblem, target: TargetPoses, driven: DrivenLinkage) -> str | None:
+    """Return a sentence on the positions that may be missed; None if all are exact."""
+    exact = np.asarray(target.exact_mask.all(axis=-1))
+    if exact.all():
+        return None
+    offsets = driven.offsets[~exact]
+    distance = write_quantity(f"{np.hypot(offsets[:, 0], offsets[:, 1]).max():.3g}", problem.length_unit)
+    angle = f"{math.degrees(np.abs(offsets[:, 2]).max()):.3g}"
+    return compose(
+        "motion-exact-positions-only", exact=int(exact.sum()), count=len(exact), distance=distance, angle=angle
+    )
 
 
 def _check_choices(problem: MotionProblem, target: TargetPoses, driven: DrivenLinkage) -> list[Check]:

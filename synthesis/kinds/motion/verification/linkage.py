@@ -20,6 +20,7 @@ from kinematics.linkage.planar.branches import Branch, compute_cycle_on_branch
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import find_branches, find_limit_positions, find_reference_branch
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.target_poses import TargetPoses
 from synthesis.kinds.motion.verification.chain_match import measure_chain_gap
@@ -40,7 +41,6 @@ from synthesis.verification.checks import CHOICE_TOLERANCE, check_error
 from synthesis.verification.constraints import check_zone
 from synthesis.verification.measures import classify_inner_fourbar, list_link_lengths, measure_linkage, measure_reach
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from synthesis.verification.workspace import BODY_POINT, find_carrier
 
 OWN_BRANCH_FACTOR = 1.5

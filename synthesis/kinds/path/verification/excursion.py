@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from kinematics.arrays import Complex, Real
 from kinematics.compiling import njit
-from synthesis.verification.refined_extremes import find_minimum_near
+from kinematics.linkage.refined_extremes import find_minimum_near
 
 CURVE_STEP_COUNT = 1440
 """Number of input steps at which the curve is compared with the target: a quarter of a degree for a full turn."""

@@ -15,6 +15,7 @@ from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import compute_cycle_on_branch
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification.fourbar import AtPoints, TracedPath, build_path_design
@@ -35,7 +36,6 @@ from synthesis.verification.measures import (
     measure_reach,
 )
 from synthesis.verification.reconstruction import rebuild_mechanism
-from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from synthesis.verification.workspace import BODY_POINT
 
 TracedMechanism = SliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism | EightbarMechanism

@@ -13,13 +13,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from kinematics.arrays import Complex, Real
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_minimum_near
 from kinematics.message import compose
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check
 from synthesis.model.dimension import LENGTH
 from synthesis.verification.checks import check_maximum
-from synthesis.verification.refined_extremes import GRID_SIZE, find_minimum_near
 
 DIFFERENCE_STEP = 1e-4
 """Half of the angle, radians, over which P's displacement is differenced for its speed; the relative error is the angle

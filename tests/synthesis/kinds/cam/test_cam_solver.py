@@ -495,3 +495,19 @@ def test_a_criterion_that_lets_another_peak_explode_is_warned_about(criterion, e
 def test_a_sound_motion_is_not_warned_about():
     assert only(answered(cam(segments=moves("optimal", "optimal"), minimize="peak_jerk"))).optimality.warning is None
     assert only(answered(cam(segments=moves("modified_sine", "cycloidal")))).optimality.warning is None
+
+
+@pytest.mark.parametrize(
+    ("limits", "default"),
+    [
+        ({}, "pressure_angle 30"),
+        ({"pressure_angle": 45.0}, "curvature_ratio 2"),
+        ({"pressure_angle": 30.0}, None),
+        ({"pressure_angle": 45.0, "curvature_ratio": 2.0}, None),
+    ],
+)
+def test_a_default_that_set_the_radius_is_named(limits, default):
+    summary = answered(cam(limits=limits)).summary
+    assert [part for part in summary.split(". ") if "default" in part] == (
+        [] if default is None else [f"The radius is set by {default}, a default."]
+    )

@@ -8,9 +8,9 @@ import pytest
 from kinematics.linkage.fourbar.closed_form import Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles, find_minimum_near
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
-from synthesis.verification.refined_extremes import GRID_SIZE, find_min_transmission_angles, find_minimum_near
 
 
 def test_the_least_may_lie_beside_a_place_that_is_not_the_lowest():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import OPEN_ASSEMBLY, Fourbar, positions
+from kinematics.linkage.refined_extremes import find_minimum_near
 from synthesis.kinds.path.verification.excursion import BULGE_RATIO, measure_excursion, sample_curve
 from synthesis.kinds.path.verification.fourbar import verify_path
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.registry import parse_problem
-from synthesis.verification.refined_extremes import find_minimum_near
 from tests.support.synthesis.curve_verification import distance_from
 
 CORNERS = np.array([0.0, 4.0, 4.0 + 3.0j])

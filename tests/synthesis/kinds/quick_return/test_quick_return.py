@@ -12,10 +12,11 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage.fourbar import Fourbar, barker_type, find_transmission_extremes
+from synthesis.dispatch import solve
 from synthesis.kinds.quick_return.crank_rocker import list_families
 from synthesis.kinds.quick_return.design import QuickReturnDesign
 from synthesis.model.linkage.answer import FourbarMechanism
-from synthesis.registry import parse_problem
+from synthesis.registry import KINDS, parse_problem
 from tests.cases import HERE
 from tests.support.synthesis.quick_return import crank_rocker
 
@@ -270,3 +271,24 @@ def test_demands_on_both_sides_of_the_searched_best(swing: float, ratio: float) 
     none = crank_rocker(time_ratio=ratio, swing=swing, constraints=above)
     assert none.designs == []
     assert none.search.complete
+
+
+@pytest.mark.parametrize("mechanism", ["auto", "fourbar", "drag_link_rocker"])
+def test_a_transmission_angle_above_the_bound_of_a_swing_is_proven_impossible(mechanism: str) -> None:
+    """A rocker of 110° transmits at less than 90° − 55° = 35°, alone or behind a drag link."""
+    limits = {"min_transmission_angle": 40.0}
+    statement = {"kind": "quick_return", "swing": 110.0, "time_ratio": 1.5, "mechanism": mechanism}
+    result = KINDS["quick_return"].solve(parse_problem({**statement, "constraints": limits}), lambda *_: None)
+    assert (result.designs, result.search.complete) == ([], True)
+    assert result.summary.startswith(
+        "No design exists. A rocker with a swing of 110° has a transmission angle below 35°"
+    )
+
+
+def test_a_summary_with_more_designs_than_listed_says_so() -> None:
+    for most in (3, 50):
+        statement = {"kind": "quick_return", "swing": 110.0, "time_ratio": 1.0, "max_designs": most}
+        result = solve(parse_problem(statement))
+        count, listed = result.search.accepted, len(result.designs)
+        assert result.summary.startswith(f"{count} designs have a measured time ratio of 1.")
+        assert (f"{listed} of {count} designs that passed are listed." in result.summary) == (listed < count)
