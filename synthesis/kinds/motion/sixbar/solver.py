@@ -88,9 +88,9 @@ SEARCH_STEP_COUNT, STEP_COUNT, FINAL_STEP_COUNT = 16, 24, 72
 """Numbers of steps of the input at which constraints are penalties in the search and in improvements, and at which they
 are enforced in fits and linkages are evaluated."""
 
-COARSE_TOLERANCE, FINE_TOLERANCE, FINAL_STEPS = 1e-2, 1e-10, 300
-"""Tolerances of descents in the search, where a slow one is left to basin hopping, and of those to the end; and maximum
-number of steps of the latter."""
+COARSE_TOLERANCE, FINE_TOLERANCE, FINAL_DESCENTS = 1e-2, 1e-10, 6
+"""Tolerances of descents in the search, where a slow one is left to basin hopping, and of those to the end; and number
+of the latter in succession."""
 
 MET_COST = 1e-22
 """Half the sum of squares below which a linkage meets all positions and constraints, up to rounding."""
@@ -327,7 +327,10 @@ class SixbarSearch:
     def converge_fits(self, pool: Sequence[Fit]) -> list[Fit]:
         """Return the fits of a pool at their least squares under enforced constraints, on their exact positions."""
         task = self.build_task(self.limits.bare_aims, FINAL_STEP_COUNT)
-        fits = descend_softly(pool, task, FINAL_STEPS, FINE_TOLERANCE, SOFT_WEIGHT)
+        fits = list(pool)
+        for _ in range(FINAL_DESCENTS):
+            starts = [normalize_heading(fit) for fit in fits]
+            fits = sort_fits(descend_softly(starts, task, HOP_STEPS, FINE_TOLERANCE, SOFT_WEIGHT))
         # Positions that can be met at the limits are met by now; the others keep a small violation.
         met, missed = _take_met(fits)
         ends = [*met, *sort_fits(fit_constrained(missed, task))]
@@ -366,6 +369,18 @@ class SixbarSearch:
         chosen = select_distinct([self._list_joints(fit) for fit in fits], most, MIN_SEPARATION) if fits else []
         made = [self.build_mechanism(fits[k]) for k in chosen]
         return [mechanism for mechanism in made if mechanism is not None]
+
+
+def normalize_heading(fit: Fit) -> Fit:
+    """Return a fit whose heading is at a distance of 1 from the traced point.
+
+    Descents change this distance at random, because nothing depends on it; near 0 they would stop.
+    """
+    point, heading = (2 * fit.topology.get_source(node) for node in (fit.topology.point, fit.topology.heading))
+    x = fit.x.copy()
+    along = x[heading : heading + 2] - x[point : point + 2]
+    x[heading : heading + 2] = x[point : point + 2] + along / np.hypot(*along)
+    return fit._replace(x=x)
 
 
 def _take_met(fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:

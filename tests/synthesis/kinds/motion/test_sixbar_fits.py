@@ -56,8 +56,9 @@ def test_a_fit_goes_on_to_the_limits_where_positions_are_met_there(kind, number)
     joints = (z - complex(search.task.origin)) / search.task.size
     # Headings count from the first position.
     turn = np.exp(-1j * math.radians(positions[0]["angle"]))
-    joints[topology.heading] = joints[topology.point] + turn * (joints[topology.heading] - joints[topology.point])
-    x = np.concatenate([joints.view(float), np.log(np.diff(inputs))]) + 1e-5
+    along = turn * (joints[topology.heading] - joints[topology.point])
+    joints[topology.heading] = joints[topology.point] + along / abs(along)
+    x = np.concatenate([joints.view(float), np.log(np.diff(inputs))]) + 1e-4
     start = Fit(topology, x, inputs)
     (kept_off,) = descend_softly([start], search.build_task(search.limits.aims, FINAL_STEP_COUNT), 300, FINE_TOLERANCE)
     assert kept_off.cost > 1e-13
