@@ -23,9 +23,9 @@ from synthesis.results.measured_ranking import (
     sort_by_measure,
     widen_search,
 )
-from synthesis.results.measurement import measure_designs
+from synthesis.results.measurement import measure_buildability, measure_designs
 from synthesis.results.pareto import pareto_front
-from synthesis.results.practicality import sort_usable_first
+from synthesis.results.practicality import order_designs
 from synthesis.results.remarks import append_remark, write_quantity
 from synthesis.results.rounding import round_designs
 
@@ -91,8 +91,9 @@ def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) 
         result = search_below_limits(problem, result, lambda narrower: kind.solve(narrower, _ignore_progress))
     if problem.manufacture is not None and problem.manufacture.is_gridded:
         result = _round_designs(problem, result, kind)
+    measured = [measure_buildability(problem, design) for design in result.designs]
     # Practicality is judged in the default order, in which designs were searched.
-    designs, remark = sort_usable_first(widen_search(problem), result.designs)
+    designs, remark = order_designs(widen_search(problem), measured)
     if is_measured:
         result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
     else:

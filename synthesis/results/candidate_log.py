@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
 from kinematics.message import JOINED, Message, compose, find_message, join_messages, remember
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
+from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
-from synthesis.model.protocols import VerifiedDesign
-from synthesis.results.measurement import check_shared_constraints
+from synthesis.model.protocols import DrivenDesign, VerifiedDesign
+from synthesis.results.measurement import check_shared_constraints, select_buildable_first
+from synthesis.results.practicality import sort_by_practice
 from synthesis.results.remarks import write_name
 from synthesis.verification.shared_constraints import check_workspace_of_design
 
@@ -206,10 +208,21 @@ class CandidateLog(Generic[Design]):
         different : callable, optional
             Drops designs that are nearly equal to an earlier one.
         """
-        shown = ordered(self.passed)
+        shown = self._sort_by_practice(ordered(self.passed))
         if self.stated.include_failed:
             shown = [*shown, *ordered(list(map(self._complete_failed, self.failed)))]
-        return (different(shown) if different else shown)[: self.stated.max_designs]
+        shown = different(shown) if different else shown
+        if isinstance(self.stated, LinkageProblem):
+            # Every design of a linkage problem is a driven linkage.
+            driven = cast("list[DrivenDesign]", shown)
+            shown = cast("list[Design]", select_buildable_first(self.stated, driven, self.stated.max_designs))
+        return shown[: self.stated.max_designs]
+
+    def _sort_by_practice(self, designs: list[Design]) -> list[Design]:
+        """Return designs in the order of practicality; those of mechanisms without links are unchanged."""
+        if not isinstance(self.stated, LinkageProblem):
+            return designs
+        return cast("list[Design]", sort_by_practice(self.stated, cast("list[DrivenDesign]", designs)))
 
     def _complete_failed(self, failed: Design) -> Design:
         """Return a failed design, completed by the checks of its workspace."""

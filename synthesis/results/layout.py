@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TypeVar
 
 from synthesis.model.answer import Check, Verification
@@ -25,17 +24,14 @@ def add_layout(problem: LinkageProblem, design: Design) -> Design:
     if layout_spec is None or design.layout is not None:
         return design
     # A local import: only problems with this block need the module.
+    from synthesis.analyses.linkages.cycle import get_used_range
     from synthesis.analyses.linkages.layout import lay_out_mechanism
     from synthesis.mechanisms.skeleton import assemble_skeleton
 
     stated, metrics = design.mechanism, design.metrics
     reference = stated.reference_input_angle if isinstance(stated, HasReferenceAngle) else None
     mechanism = assemble_skeleton(SkeletonSpec.model_validate(stated.skeleton.model_dump()), reference)
-    used = metrics.used_stroke
-    # A sliding input has a used stroke, a rotating input a used range.
-    if metrics.used_range is not None:
-        used = math.radians(metrics.used_range[0]), math.radians(metrics.used_range[1])
-    layout = lay_out_mechanism(mechanism, layout_spec, used)
+    layout = lay_out_mechanism(mechanism, layout_spec, get_used_range(metrics))
     update: dict[str, object] = {"layout": layout}
     if layout_spec.max_planes is not None:
         check = Check(

@@ -8,19 +8,21 @@ measured twice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple, TypeVar, cast
 
 from synthesis.model.answer import AnyResult
 from synthesis.model.linkage.problem import FORCE_NAMES, LinkageProblem
 from synthesis.model.problem import ProblemBase
 from synthesis.model.protocols import DrivenDesign, VerifiedDesign
+from synthesis.results.buildability import check_pin_distance, is_buildable, measure_build
 from synthesis.results.forces import add_forces, check_forces
 from synthesis.results.layout import add_layout
 from synthesis.results.manufacture import add_manufacture, check_yield
 from synthesis.verification.shared_constraints import check_workspace_of_design
 
 Design = TypeVar("Design", bound=VerifiedDesign)
+Driven = TypeVar("Driven", bound=DrivenDesign)
 
 
 class _Measurement(NamedTuple):
@@ -70,7 +72,7 @@ _MEASUREMENTS = (
 
 
 def check_shared_constraints(problem: ProblemBase, design: Design) -> Design | None:
-    """Return a verified design with the checks of its workspace, and of its forces, planes and yield if limited.
+    """Return a verified design with the checks of its workspace and pins, and of forces, planes and yield if limited.
 
     A failed check ends the verification. Return None if no mechanism can be built from the dimensions of the design.
     """
@@ -79,10 +81,35 @@ def check_shared_constraints(problem: ProblemBase, design: Design) -> Design | N
         return judged
     # Every design of a linkage problem is a driven linkage.
     driven = cast(DrivenDesign, judged)
+    if driven.verification.passed:
+        driven = check_pin_distance(problem, driven)
     for measurement in _MEASUREMENTS:
         if driven.verification.passed and measurement.is_limited(problem):
             driven = measurement.judge(problem, driven)
     return cast(Design, driven)
+
+
+def measure_buildability(problem: LinkageProblem, design: Driven) -> Driven:
+    """Return a design with the measures of whether it can be built, and with its layout if the problem has sizes."""
+    return measure_build(problem, add_layout(problem, design))
+
+
+def select_buildable_first(problem: LinkageProblem, designs: Sequence[Driven], count: int) -> list[Driven]:
+    """Return designs in order, with those that cannot be built moved behind the others.
+
+    Designs that fail a check stay last. Only as many designs are measured as are needed to find ``count`` that can be
+    built, at most ``count`` more than these.
+    """
+    first: list[Driven] = []
+    last: list[Driven] = []
+    rest = list(designs)
+    while rest and rest[0].verification.passed and len(first) < count and len(last) <= count:
+        design = measure_buildability(problem, rest.pop(0))
+        (first if is_buildable(design) else last).append(design)
+    # The rest is not measured here, because enough others precede it or too many cannot be built.
+    passed = [design for design in rest if design.verification.passed]
+    failed = [design for design in rest if not design.verification.passed]
+    return [*first, *passed, *last, *failed]
 
 
 def measure_designs(problem: LinkageProblem, result: AnyResult, order: str | None = None) -> AnyResult:

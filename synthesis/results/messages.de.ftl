@@ -120,6 +120,7 @@ results-name-in-words =
         [pawls_at_every_stop] Klinken an jeder Raststelle
         [peak_acceleration] Spitzenbeschleunigung
         [peaks] Spitzenwerte
+        [pin_distance] Bolzenabstand
         [pin_force] Rollenkraft
         [pin_forces] Gelenkkräfte
         [piston_series] Reihe des Kolbens
@@ -185,6 +186,7 @@ results-name-in-words =
         [stroke] Hub
         [swing] Schwingwinkel
         [teeth] Zähne
+        [tie_rod_clearance] Abstand der Spurstange vom Rad
         [time_ratio] Zeitverhältnis
         [tip_thickness] Zahnkopfdicke
         [tolerance] Toleranz
@@ -270,6 +272,23 @@ results-no-design-with-even-links = Kein gefundener Entwurf hat einen Übertragu
 results-no-near-design-with-even-links = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
 results-even-links-first = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist; Entwürfe mit solchem Winkel und Verhältnis stehen zuerst.
 results-near-even-links-first = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist; Entwürfe mit solchem Winkel und Verhältnis stehen zuerst.
+results-first-for-soundness = Der erste Entwurf hat das { $factor }-Fache des kleinsten Fehlers, den Entwurf { $number } hat, dafür einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
+results-unbuildable-last =
+    { $count ->
+        [one] Ein Entwurf ist nicht baubar und steht zuletzt: Keine Anordnung in Ebenen lässt Glieder zu, deren Breite mindestens { $share } % der Länge des längsten Gliedes ist.
+       *[other] { $count } Entwürfe sind nicht baubar und stehen zuletzt: Keine Anordnung in Ebenen lässt Glieder zu, deren Breite mindestens { $share } % der Länge des längsten Gliedes ist.
+    }
+results-none-buildable = Keiner dieser Entwürfe ist wie üblich baubar: Die Glieder des ersten wären höchstens { $width } { $unit } breit, weniger als { $share } % seines längsten Gliedes.
+results-none-buildable-in-planes = Keiner dieser Entwürfe ist baubar: In jeder Anordnung in Ebenen stoßen Glieder oder Bolzen zusammen.
+results-unbuildable-in-layout =
+    { $count ->
+        [one] Ein Entwurf ist mit den Maßen der Anordnung nicht baubar und steht zuletzt.
+       *[other] { $count } Entwürfe sind mit den Maßen der Anordnung nicht baubar und stehen zuletzt.
+    }
+results-none-buildable-in-layout = Keiner dieser Entwürfe ist mit den Maßen der Anordnung über die ganze Bewegung baubar.
+results-extra-links = Entwurf { $number } hat { $links } Glieder mehr als Entwurf { $simple }: Sein kleinster Übertragungswinkel ist { $changed }° statt { $angle }°.
+results-extra-links-and-error = Entwurf { $number } hat { $links } Glieder mehr als Entwurf { $simple }: Sein Fehler ist { $other } statt { $error }, sein kleinster Übertragungswinkel { $changed }° statt { $angle }°.
+results-extra-links-and-negligible-error = Entwurf { $number } hat { $links } Glieder mehr als Entwurf { $simple }: Sein Fehler ist { $other } statt { $error }, ein Unterschied unterhalb üblicher Toleranzen, sein kleinster Übertragungswinkel { $changed }° statt { $angle }°.
 
 # Rounding to a grid
 

@@ -65,6 +65,23 @@ results-no-design-with-even-links = No design found has a transmission angle of 
 results-no-near-design-with-even-links = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
 results-even-links-first = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
 results-near-even-links-first = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
+results-first-for-soundness = The first design has { $factor } times the smallest error, that of design { $number }, for a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
+results-unbuildable-last =
+    { $count ->
+        [one] One design cannot be built and is listed last: no arrangement in planes exists for links that are at least { $share } % as wide as the longest link is long.
+       *[other] { $count } designs cannot be built and are listed last: no arrangement in planes exists for links that are at least { $share } % as wide as the longest link is long.
+    }
+results-none-buildable = None of these designs can be built as usual: the links of the first would be at most { $width } { $unit } wide, less than { $share } % of its longest link.
+results-none-buildable-in-planes = None of these designs can be built: links or pins collide in every arrangement in planes.
+results-unbuildable-in-layout =
+    { $count ->
+        [one] One design cannot be built with the sizes of the layout and is listed last.
+       *[other] { $count } designs cannot be built with the sizes of the layout and are listed last.
+    }
+results-none-buildable-in-layout = None of these designs can be built with the sizes of the layout over the whole motion.
+results-extra-links = Design { $number } has { $links } more links than design { $simple }: its minimum transmission angle is { $changed }° instead of { $angle }°.
+results-extra-links-and-error = Design { $number } has { $links } more links than design { $simple }: its error is { $other } instead of { $error }, and its minimum transmission angle { $changed }° instead of { $angle }°.
+results-extra-links-and-negligible-error = Design { $number } has { $links } more links than design { $simple }: its error is { $other } instead of { $error }, a difference below usual tolerances, and its minimum transmission angle { $changed }° instead of { $angle }°.
 
 # Rounding to a grid
 

@@ -5,11 +5,13 @@ that would collide during the motion need different planes as well. :mod:`~kinem
 parts, :mod:`~kinematics.linkage.layout.planes` minimizes the number of planes, and
 :mod:`~kinematics.linkage.layout.plan` sweeps the motion and combines both. If no arrangement between two bases works,
 :mod:`~kinematics.linkage.layout.split_links` places parts on both sides of a base.
+:mod:`~kinematics.linkage.layout.widths` finds the widest links for which any of these exists.
 """
 
 from kinematics.linkage.layout.parts import Division, GearDisc, Piece, list_gear_discs, list_pieces
 from kinematics.linkage.layout.plan import Clash, Layout, arrange_planes
 from kinematics.linkage.layout.split_links import DividedLayout, arrange_divided, list_divisions
+from kinematics.linkage.layout.widths import find_greatest_width
 
 __all__ = [
     "Clash",
@@ -20,6 +22,7 @@ __all__ = [
     "Piece",
     "arrange_divided",
     "arrange_planes",
+    "find_greatest_width",
     "list_divisions",
     "list_gear_discs",
     "list_pieces",

@@ -247,6 +247,33 @@ def _list_joined(parts: Parts) -> list[tuple[int, int]]:
     return sorted({pair for pin in parts.pins for pair in combinations(sorted(pin.plates), 2)})
 
 
+def list_separable_pairs(parts: Parts) -> list[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """List all pairs of parts that do not belong together: the numbers of their plates, and those of their pins."""
+    plates, pins = parts.plates, parts.pins
+    joined = {*_list_joined(parts), *(pair for mesh in parts.meshes for pair in combinations(mesh, 2))}
+    pairs: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
+    pairs += [(pair, ()) for pair in combinations(range(len(plates)), 2) if pair not in joined]
+    pairs += [((k,), (n,)) for n, pin in enumerate(pins) for k in range(len(plates)) if k not in pin.plates]
+    # Two pins through the same plate, or on the base, share a plane there and cannot be separated.
+    pairs += [
+        ((), (n, m))
+        for n, m in combinations(range(len(pins)), 2)
+        if pins[n].plates & pins[m].plates or (pins[n].grounded and pins[m].grounded)
+    ]
+    return pairs
+
+
+def is_buildable_in_planes(
+    parts: Parts, meeting: Sequence[tuple[tuple[int, ...], tuple[int, ...]]], *, through: bool
+) -> bool:
+    """Return whether planes exist for parts of which these pairs of :func:`list_separable_pairs` come too close."""
+    shafts = {n for n, pin in enumerate(parts.pins) if through and pin.grounded}
+    stubs = {n for plates, pins in meeting if plates for n in pins} & shafts
+    # Names and inputs only matter for reports.
+    pairs = [_Pair(("", ""), 0.0, plates, pins) for plates, pins in meeting]
+    return _Builder(parts, shafts, stubs).is_buildable(pairs)
+
+
 class _Scene:
     """Parts of a mechanism in motion, and the pairs that come closer than the gap."""
 
@@ -258,16 +285,7 @@ class _Scene:
     def find_meetings(self) -> list[_Pair]:
         """Find all pairs that come too close somewhere, except those that belong together."""
         plates, pins = self._parts.plates, self._parts.pins
-        joined = {*_list_joined(self._parts), *(pair for mesh in self._parts.meshes for pair in combinations(mesh, 2))}
-        pairs: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
-        pairs += [(pair, ()) for pair in combinations(range(len(plates)), 2) if pair not in joined]
-        pairs += [((k,), (n,)) for n, pin in enumerate(pins) for k in range(len(plates)) if k not in pin.plates]
-        # Two pins through the same plate, or on the base, share a plane there and cannot be separated.
-        pairs += [
-            ((), (n, m))
-            for n, m in combinations(range(len(pins)), 2)
-            if pins[n].plates & pins[m].plates or (pins[n].grounded and pins[m].grounded)
-        ]
+        pairs = list_separable_pairs(self._parts)
         names = [plate.name for plate in plates] + [pin.name for pin in pins]
         numbers = [self._get_numbers(*pair) for pair in pairs]
         results = sweep_pairs(

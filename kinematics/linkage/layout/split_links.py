@@ -17,7 +17,7 @@ bases.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import NamedTuple
@@ -144,16 +144,9 @@ def arrange_divided(
         For more plates on one side than can be arranged.
     """
     parts = build_parts(mechanism, link_width, pin_diameter, low, high, slot_ends, division=division)
-    lower, _ = name_halves(division.link)
-    below = {n for n, plate in enumerate(parts.plates) if plate.name == lower or plate.link in division.inside}
+    below = _find_lower_plates(parts, division)
     met = _find_meetings(mechanism, parts, below, low, high, gap)
-    free = [n for n, pin in enumerate(parts.pins) if pin.grounded and pin.plates <= below]
-    # Each shaft inside can stand on the first base or hang from the second: try all combinations.
-    ways = [
-        _SideChoice(parts, below, dict(zip(free, hung, strict=True)), met)
-        for hung in product((False, True), repeat=len(free))
-    ]
-    best = min(ways, key=lambda way: way.merit)
+    best = min(_list_choices(parts, below, met), key=lambda way: way.merit)
     names = [plate.name for plate in parts.plates] + [pin.name for pin in parts.pins]
     return DividedLayout(
         {plate.name: plane for plate, plane in zip(parts.plates, best.planes, strict=True)},
@@ -163,13 +156,47 @@ def arrange_divided(
     )
 
 
+def is_buildable_divided(parts: Parts, division: Division, meeting: Sequence[tuple[int, int]]) -> bool:
+    """Return whether planes exist for a divided linkage whose parts come too close in these pairs.
+
+    The pairs are those of :func:`list_divided_pairs`.
+    """
+    met = [(one, other, 0.0) for one, other in meeting]
+    return any(not way.clashes for way in _list_choices(parts, _find_lower_plates(parts, division), met))
+
+
+def list_divided_pairs(parts: Parts, division: Division) -> list[tuple[int, int]]:
+    """List all pairs of parts of a divided linkage that may collide, by their numbers: plates before pins."""
+    return _list_pairs(parts, _find_lower_plates(parts, division))
+
+
+def _find_lower_plates(parts: Parts, division: Division) -> set[int]:
+    """Find the plates below the second base."""
+    lower, _ = name_halves(division.link)
+    return {n for n, plate in enumerate(parts.plates) if plate.name == lower or plate.link in division.inside}
+
+
+def _list_choices(parts: Parts, below: set[int], met: _Met) -> Iterator[_SideChoice]:
+    """List the arrangements for all choices of bases: shafts inside stand on the first or hang from the second."""
+    free = [n for n, pin in enumerate(parts.pins) if pin.grounded and pin.plates <= below]
+    for hung in product((False, True), repeat=len(free)):
+        yield _SideChoice(parts, below, dict(zip(free, hung, strict=True)), met)
+
+
 _Met = Sequence[tuple[int, int, float]]
 """Parts that come too close, by their numbers (plates before pins), and an input at which they do."""
 
 
 def _find_meetings(mechanism: Mechanism, parts: Parts, below: set[int], low: float, high: float, gap: float) -> _Met:
-    """Find plates and pins that come too close, among those that no pin joins and that may lie on one side of the
-    base."""
+    """Find plates and pins that come too close, among those that may collide."""
+    pairs = _list_pairs(parts, below)
+    outlines = [plate.outline for plate in parts.plates] + [pin.outline for pin in parts.pins]
+    results = sweep_pairs(mechanism, outlines, pairs, low, high, gap, nearest="none")
+    return [(*pair, result.at) for pair, result in zip(pairs, results, strict=True) if not result.keeps]
+
+
+def _list_pairs(parts: Parts, below: set[int]) -> list[tuple[int, int]]:
+    """List plates and pins that no pin joins and that may lie on one side of the base, or share a plate or base."""
     plates, pins = parts.plates, parts.pins
     count = len(plates)
     joined = {pair for pin in pins for pair in combinations(sorted(pin.plates), 2)}
@@ -185,9 +212,7 @@ def _find_meetings(mechanism: Mechanism, parts: Parts, below: set[int], low: flo
         for n, m in combinations(range(len(pins)), 2)
         if pins[n].plates & pins[m].plates or (pins[n].grounded and pins[m].grounded)
     ]
-    outlines = [plate.outline for plate in plates] + [pin.outline for pin in pins]
-    results = sweep_pairs(mechanism, outlines, pairs, low, high, gap, nearest="none")
-    return [(*pair, result.at) for pair, result in zip(pairs, results, strict=True) if not result.keeps]
+    return pairs
 
 
 class _SideChoice:

@@ -38,7 +38,7 @@ from service.parts.gears.sizing import MAX_TOOTH_PLAY
 from service.parts.linkage.builder import Planes, Slot, build_assembly, measure_keyway_reach
 from service.parts.linkage.gears import make_pair_wheels
 from service.parts.linkage.motion import LinkageMotion
-from synthesis.analyses.linkages.cycle import find_branch, find_cycle_along
+from synthesis.analyses.linkages.cycle import find_built_range, get_used_range
 from synthesis.model.design_interface import AnyDesign
 from synthesis.model.problem import ProblemBase
 from synthesis.verification.reconstruction import rebuild_mechanism
@@ -287,7 +287,9 @@ def _check_assembly(assembly: Assembly, sizes: Sizes) -> Trial:
     return Trial(None, fault) if fault else Trial(assembly, "")
 
 
-def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tuple[float, float, bool]:
+def _find_range(
+    mechanism: Mechanism, design: AnyDesign, over: Literal["used", "cycle"] | None
+) -> tuple[float, float, bool]:
     """Return the range of the input for which the parts are made, and whether it is a full cycle.
 
     Raises
@@ -295,19 +297,10 @@ def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tu
     NotMade
         If the mechanism cannot move through the range.
     """
-    slides = mechanism.has_slide_input
-    branch = find_branch(mechanism)
-    metrics = design.metrics
-    used = getattr(metrics, "used_stroke", None)
-    used_range = getattr(metrics, "used_range", None)
-    if used_range is not None:
-        used = tuple(math.radians(end) for end in used_range)
-    turns = not slides and branch is not None and branch.full
-    if over == "cycle" or (over is None and (turns or used is None)):
-        used = find_cycle_along(mechanism, branch)
+    used = find_built_range(mechanism, get_used_range(design.metrics), over)
     if used is None:
         raise NotMade(compose("parts-used-range-impossible"), "/query/over")
-    low, high = sorted(used)
+    low, high = used
     # The ends may be toggles: test the interior only.
     inputs = np.linspace(low, high, DRIVE_INPUTS + 2)[1:-1] if high > low else np.array([low])
     motion = LinkageMotion(mechanism, low, high, False)
@@ -317,7 +310,7 @@ def _find_range(mechanism: Mechanism, design: AnyDesign, over: str | None) -> tu
         raise NotMade(compose("parts-cannot-be-driven", reason=str(error))) from None
     if not valid:
         raise NotMade(compose("parts-not-assembled-over-motion"), "/query/over")
-    turn = math.inf if slides else find_cycle_from_reference(mechanism)
+    turn = math.inf if mechanism.has_slide_input else find_cycle_from_reference(mechanism)
     return low, high, abs(high - low - turn) <= 1e-9 * turn
 
 

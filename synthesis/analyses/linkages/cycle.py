@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from typing import Literal
+
 import numpy as np
 
 from kinematics.linkage.planar.branches import Branch, compute_cycle, compute_cycle_on_branch, count_fastest_turns
 from kinematics.linkage.planar.limits import find_branches, find_reference_branch
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 from kinematics.message import compose
+from synthesis.model.linkage.answer import UsedRange
 
 MAX_EFFORT = 200
 """Maximum effort of an analysis for which a client waits: a few seconds."""
@@ -42,6 +46,45 @@ def find_branch(mechanism: Mechanism) -> Branch | None:
         return find_reference_branch(mechanism, list_branches(mechanism))
     except TopologyError:
         return None
+
+
+def find_built_range(
+    mechanism: Mechanism, used: tuple[float, float] | None, over: Literal["used", "cycle"] | None = None
+) -> tuple[float, float] | None:
+    """Find the range of the input that a built linkage must move through without interference, in ascending order.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        One design, in its reference configuration.
+    used : pair of float or None
+        The range over which it was verified, radians or positions along the input slide.
+    over : str, optional
+        Whether the used range or the full cycle counts. Default: the cycle of an input that turns fully, and of a
+        linkage without a used range.
+
+    Returns
+    -------
+    pair of float or None
+        None if ``over`` requests a used range that does not exist.
+    """
+    branch = find_branch(mechanism)
+    turns = not mechanism.has_slide_input and branch is not None and branch.full
+    if over == "cycle" or (over is None and (turns or used is None)):
+        used = find_cycle_along(mechanism, branch)
+    return None if used is None else (min(used), max(used))
+
+
+def get_used_range(metrics: object) -> tuple[float, float] | None:
+    """Return the range over which a design was verified, radians or positions along the input slide, by its metrics.
+
+    It is None for metrics without such a range.
+    """
+    if not isinstance(metrics, UsedRange):
+        return None
+    if metrics.used_range is not None:
+        return math.radians(metrics.used_range[0]), math.radians(metrics.used_range[1])
+    return metrics.used_stroke
 
 
 def find_cycle(mechanism: Mechanism) -> tuple[float, float]:

@@ -28,7 +28,6 @@ from synthesis.model.linkage.type_choice import UNCLASSED_SIXBAR
 from synthesis.numerics.narrowing import find_narrowest_band
 from synthesis.results.candidate_log import OUTRANKED_REASON, CandidateLog, report_candidates
 from synthesis.results.placement import place_mechanism
-from synthesis.results.practicality import sort_usable_first
 from synthesis.results.ranking import rank_designs, select_best
 from synthesis.verification.measures import list_link_lengths
 
@@ -166,10 +165,11 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
             sifting.verify_candidates(candidates, partial(_drive_start, problem, search.kind), enough)
     progress(1.0, compose("dwell-verified"))
     method = RANDOM_METHOD if any(search.kind == "triad" for search in searches) else CURVE_METHOD
+    designs = sifting.select_designs(partial(_rank_designs, problem))
     return DwellResult(
-        designs=sifting.select_designs(partial(_rank_designs, problem)),
+        designs=designs,
         search=sifting.build_search(compose(method)),
-        summary=_describe_result(problem, sifting),
+        summary=_describe_result(problem, designs, sifting),
     )
 
 
@@ -364,18 +364,16 @@ def _get_bounds(kind: Kind, start: Start, ratio: float) -> tuple[Real, Real]:
     return low, high
 
 
-def _describe_result(problem: DwellProblem, sifting: CandidateLog[DwellDesign]) -> str:
+def _describe_result(problem: DwellProblem, designs: list[DwellDesign], sifting: CandidateLog[DwellDesign]) -> str:
     if not sifting.passed:
         return compose("dwell-none-found", reasons=sifting.format_reasons() or compose("dwell-none-rests"))
-    shown, count = _rank_designs(problem, sifting.passed), len(sifting.passed)
     if problem.is_listed_later:
-        best, message = select_best(shown, _get_jitter), "dwell-sixbars-found-stillest"
+        best, message = select_best(sifting.passed, _get_jitter), "dwell-sixbars-found-stillest"
     else:
-        best = sort_usable_first(problem, shown[: problem.max_designs]).designs[0]
-        message = "dwell-sixbars-found"
+        best, message = designs[0], "dwell-sixbars-found"
     return compose(
         message,
-        count=count,
+        count=len(sifting.passed),
         movement=write_output(problem, f"{best.metrics.jitter:.2g}"),
         tolerance=write_output(problem, f"{problem.max_movement:.3g}"),
         angles=list_angles([f"{rest.width:.1f}" for rest in best.targets]),

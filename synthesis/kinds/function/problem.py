@@ -57,6 +57,9 @@ MAX_EXACT_PAIRS = 7
 MAX_SIXBAR_PAIRS = 8
 """Maximum number of pairs that the sixbar search meets exactly. Watt II has nine parameters, the others eleven."""
 
+UNIT_SCALE_TOLERANCE = 1e-7
+"""Tolerance for a scale of 1, which leaves the pairs unchanged."""
+
 WATT_2_PAIR_COUNT = 9
 """Number of pairs that leave finitely many Watt II sixbars, all of which are computed."""
 
@@ -284,6 +287,26 @@ class FunctionProblem(LinkageProblem):
     def guides_a_point(self) -> bool:
         """Whether the linkage guides a coupler point P; never for a function generator."""
         return False
+
+    def measure_error(self, design: Any) -> float:
+        """Return the error by the criterion, radians or a share of the range; 0 for pairs that are met exactly."""
+        if self.aim == "precision" and self.function is None:
+            return 0.0
+        error = design.structural_error.rms if self.aim == "least_squares" else design.structural_error.max
+        # With an open range a smaller output would otherwise always look more accurate.
+        if self.slides or self.is_output_open:
+            return float(error / abs(design.metrics.output_range))
+        return math.radians(error)
+
+    @property
+    def error_unit(self) -> tuple[float, str]:
+        """Errors of a rotating output are written in degrees."""
+        return super().error_unit if self.slides or self.is_output_open else (math.degrees(1.0), "°")
+
+    def classify_design(self, design: Any) -> int:
+        """Return 0 for a design on the pairs' own scales, 1 for one with other scales."""
+        off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
+        return int(self.pairs is not None and max(off) > UNIT_SCALE_TOLERANCE)
 
     def measure_target_errors(
         self, design: Any, _counted: NDArray[np.bool_] | None = None

@@ -9,9 +9,6 @@ from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.results.ranking import rank_designs
 
-UNIT_SCALE_TOLERANCE = 1e-7
-"""Tolerance for a scale of 1, which leaves the pairs unchanged."""
-
 
 def get_error(problem: FunctionProblem, design: FunctionDesign) -> float:
     """Return the error by the problem's criterion, relative to the output's range if that is open."""
@@ -30,9 +27,4 @@ def rank_by_error(problem: FunctionProblem, designs: list[FunctionDesign]) -> li
         own["quality"] = error
     if problem.pairs is not None and not approximates:
         own["accuracy"] = lambda design: 0.0  # all of them meet the pairs to rounding
-
-    def is_rescaled(design: FunctionDesign) -> bool:
-        off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
-        return problem.pairs is not None and max(off) > UNIT_SCALE_TOLERANCE
-
-    return rank_designs(designs, problem.rank_by, own, group=is_rescaled)
+    return rank_designs(designs, problem.rank_by, own, group=problem.classify_design)

@@ -104,6 +104,7 @@ gear_train-verified = geprüft
 
 # Summary: the best train. $meshes: its pairs of tooth numbers, such as 20:43, 17:58.
 
+gear_train-first-is-undercut = Räder mit { $teeth } Zähnen werden ohne Profilverschiebung von der Zahnstange, die sie schneidet, unterschnitten.
 gear_train-best-exact = { $meshes } hat genau die verlangte Übersetzung.
 gear_train-best-exact-of-ties =
     { $ties ->

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cmp_to_key
 
 from kinematics.message import compose, join_messages
 from synthesis.kinds.gear_train.construction.power_capacity import StrengthResult, find_carrying_trains
@@ -19,11 +20,16 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search.search import Outcome, Train, order_trains, search
 from synthesis.kinds.gear_train.search.task import Task, build_task
 from synthesis.kinds.gear_train.statement.stages import GEARS
+from synthesis.kinds.gear_train.statement.train import DEFAULT_TOLERANCE
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gears.answer import Ratio
 from synthesis.model.gears.strength import describe_power_rejections, describe_too_weak
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.remarks import list_with_and
+
+MAX_EQUAL_TRAINS = 1000
+"""Number of trains, the nearest first, among which those without undercut teeth are sought if the first has some."""
 
 SEARCH_NOTE = "gear_train-distances-in-steps"
 """Message on a search that proves nothing, because the distances that a mesh can have were searched in steps."""
@@ -99,6 +105,32 @@ def _build_pareto_train(
 
 
 def _rank_trains(problem: GearTrainProblem, task: Task, wanted: int, progress: Progress) -> Outcome:
+    """Return the best trains of the search; of equally near ones those without undercut teeth come first."""
+    outcome = _search_trains(problem, task, wanted, progress)
+    spur = all(stage.type == "external" for stage in problem.stages or [])
+    # Shifted teeth are fitted without undercut, other types of gears have their own limits, and sizes were requested.
+    if task.by_size or problem.is_fitted or not spur or not outcome.trains:
+        return outcome
+    near = cmp_to_key(task.target.compare_distances)
+    first = near(outcome.trains[0].ratio)
+    equal = [train for train in outcome.trains if near(train.ratio) == first]
+    trains = outcome.trains
+    if outcome.ties > len(equal) and any(_is_undercut(problem, train) for train in equal):
+        # Larger trains of the same error may have no undercut teeth.
+        more = search(task, problem.exact_tolerance or DEFAULT_TOLERANCE, MAX_EQUAL_TRAINS, progress).trains
+        sound = [train for train in more if near(train.ratio) == first and not _is_undercut(problem, train)]
+        trains = [*trains, *(train for train in sound if train not in trains)]
+    # Sorting is stable: trains of one error without undercut teeth keep their order.
+    ordered = sorted(trains, key=lambda train: (near(train.ratio), _is_undercut(problem, train)))
+    return outcome._replace(trains=ordered[:wanted])
+
+
+def _is_undercut(problem: GearTrainProblem, train: Train) -> bool:
+    """Return whether the rack that cuts a gear of a train removes part of its flanks."""
+    return min(train.drivers + train.driven) < problem.fewest_teeth
+
+
+def _search_trains(problem: GearTrainProblem, task: Task, wanted: int, progress: Progress) -> Outcome:
     """Return the best trains of the search; among equals those with hunting teeth come first if preferred."""
     outcome = search(task, problem.exact_tolerance, wanted, progress)
     if problem.hunting_tooth != "prefer" or not outcome.trains:
@@ -135,6 +167,7 @@ def _write_summary(
     if accepted:
         sentences = [
             _describe_best(problem, task, outcome.ties, accepted[0]),
+            _describe_undercut(accepted[0]),
             "" if borne is None else describe_power_rejections(borne.failed),
             _describe_scope(problem, outcome.combinations),
         ]
@@ -164,6 +197,14 @@ def _describe_best(problem: GearTrainProblem, task: Task, ties: int, best: GearT
     if exact:
         return compose("gear_train-best-exact-of-ties", meshes=meshes, ties=ties)
     return compose("gear_train-best-nearest-of-ties", meshes=meshes, error=error, ties=ties)
+
+
+def _describe_undercut(best: GearTrainDesign) -> str:
+    """Name the undercut gears of the best train in a sentence; empty if there are none, or if teeth are shifted."""
+    teeth = sorted({min(mesh.driver, mesh.driven) for mesh in best.metrics.meshes if mesh.undercut})
+    if not teeth:
+        return ""
+    return compose("gear_train-first-is-undercut", teeth=list_with_and([str(one) for one in teeth]))
 
 
 def _format_meshes(meshes: Iterable[tuple[int, int]]) -> str:

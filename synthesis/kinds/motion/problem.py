@@ -273,6 +273,10 @@ class MotionProblem(LinkageProblem):
             kept=list_fixed_coordinates((self.input_side.fixed_pivot, self.output_side.fixed_pivot)),
         )
 
+    def measure_error(self, design: Any) -> float:
+        """Return the RMS of the residuals of fitted positions; 0 for positions that are met, also within tolerances."""
+        return float(design.metrics.rms_residual) if self.is_least_squares else 0.0
+
     @property
     def first_pose(self) -> tuple[complex, float]:
         """P as a complex number, length units, and the body's angle, degrees, in the first position."""

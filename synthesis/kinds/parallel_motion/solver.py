@@ -64,10 +64,11 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
         ),
     )
     progress(1.0, compose("parallel_motion-verified"))
+    designs = sifting.select_designs(partial(_rank_designs, problem.rank_by))
     return ParallelMotionResult(
-        designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
+        designs=designs,
         search=sifting.build_search(compose("parallel_motion-method")),
-        summary=_describe_result(problem, sifting),
+        summary=_describe_result(designs, sifting),
     )
 
 
@@ -176,11 +177,11 @@ def _build_sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
     )
 
 
-def _describe_result(problem: ParallelMotionProblem, sifting: CandidateLog[ParallelMotionDesign]) -> str:
+def _describe_result(designs: list[ParallelMotionDesign], sifting: CandidateLog[ParallelMotionDesign]) -> str:
     if not sifting.passed:
         reasons = sifting.format_reasons() or compose("parallel_motion-no-fourbar")
         return compose("parallel_motion-none-carries", candidates=sifting.candidates, reasons=reasons)
-    best = _rank_designs(problem.rank_by, sifting.passed)[0].metrics
+    best = designs[0].metrics
     carrying = compose("parallel_motion-sixbars-carry", passed=len(sifting.passed), candidates=sifting.candidates)
     shown = compose(
         "parallel_motion-best-design" if best.full_rotation else "parallel_motion-best-design-swings",

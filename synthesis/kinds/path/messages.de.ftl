@@ -244,10 +244,6 @@ path-designs-and-cognates-passed =
 path-best-curve =
     Der beste zeichnet die Kurve mit einem mittleren Abstand (RMS) von { $rms_distance } { $unit } und einem größten
     Abstand von { $max_distance }.
-path-first-for-transmission =
-    Er steht wegen seines Übertragungswinkels von { $transmission_angle }° an erster Stelle. Der nächste Entwurf, mit
-    einem mittleren Abstand (RMS) von { $rms_distance } { $unit }, hat nur { $nearest_angle }° und ein Gliedverhältnis
-    von { $link_ratio }.
 path-cognates-ranked =
     Ersatzgetriebe zeichnen dieselbe Kurve; an erster Stelle steht das mit Gestellpunkten nahe der Kurve, guter
     Kraftübertragung und ausgeglichenen Gliedlängen.

@@ -224,9 +224,6 @@ path-designs-and-cognates-passed =
 path-best-curve =
     The best draws the curve with an rms distance of { $rms_distance } { $unit } and a maximum distance of
     { $max_distance }.
-path-first-for-transmission =
-    It comes first because of its transmission angle of { $transmission_angle }°. The nearest design, with an rms
-    distance of { $rms_distance } { $unit }, has only { $nearest_angle }° and a link ratio of { $link_ratio }.
 path-cognates-ranked =
     Cognates draw the same curve; the one with pivots near the curve, good force transmission and even links comes
     first.

@@ -333,6 +333,21 @@ class PathProblem(LinkageProblem):
             kept=list_fixed_coordinates((self.fixed_pivots.input, self.fixed_pivots.output)),
         )
 
+    def measure_error(self, design: Any) -> float:
+        """Return the RMS distance from the points together with the excursion between them; 0 within tolerances."""
+        if self.tolerances is not None:
+            return 0.0
+        return math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0) / self.task_size
+
+    @property
+    def error_unit(self) -> tuple[float, str]:
+        """Errors are written as lengths."""
+        return self.task_size, f" {self.length_unit}"
+
+    def classify_design(self, design: Any) -> int:
+        """Return 0 for a design that was meant to meet its points exactly, 1 for a fit."""
+        return int(design.metrics.curve_distance is not None)
+
     @property
     def is_matched(self) -> bool:
         """Whether the points form a curve to be drawn as a whole."""

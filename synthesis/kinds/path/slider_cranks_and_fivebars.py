@@ -34,7 +34,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.residuals.curve_constraints import compute_pivot_limits
 from synthesis.kinds.path.residuals.curve_descent import Descent, LinkageLimits, descend, measure_pivot_violations
 from synthesis.kinds.path.results import join_sentences
-from synthesis.kinds.path.task.ranking import FAR_REASON, USABLE_ANGLE, build_ordering, drop_straying
+from synthesis.kinds.path.task.ranking import FAR_REASON, build_ordering, drop_straying
 from synthesis.kinds.path.task.target_curve import interpolate_crank_angles, sample_smooth_steps
 from synthesis.kinds.path.verification.linkage import verify_traced
 from synthesis.model.kind import Progress, scale_progress
@@ -55,6 +55,7 @@ from synthesis.model.linkage.conversion import (
 )
 from synthesis.numerics.portions import run_in_portions
 from synthesis.results.candidate_log import CandidateLog, report_candidates
+from synthesis.results.practicality import MIN_USABLE_ANGLE
 from synthesis.results.ranking import select_distinct
 
 Mechanism = SliderCrankMechanism | GearedFivebarMechanism
@@ -218,7 +219,7 @@ def _list_min_angles(problem: PathProblem) -> list[float]:
     return (
         [MIN_TRANSMISSION_ANGLE]
         if problem.rank_by == "accuracy"
-        else [MIN_TRANSMISSION_ANGLE, USABLE_ANGLE + ANGLE_MARGIN]
+        else [MIN_TRANSMISSION_ANGLE, MIN_USABLE_ANGLE + ANGLE_MARGIN]
     )
 
 

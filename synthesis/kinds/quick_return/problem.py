@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.message import compose
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage.problem import LinkageProblem, RankBy
+from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import (
     MAX_MAGNITUDE,
     Contradiction,
@@ -152,7 +152,6 @@ class QuickReturnProblem(LinkageProblem):
         description="Angle of the line O2 → O4 if the output swings, or of the slide; degrees. By default 0; if O2 is "
         "left out too, chosen to satisfy the regions.",
     )
-    rank_by: RankBy = "transmission_angle"
 
     @property
     def slides(self) -> bool:

@@ -12,12 +12,12 @@ from synthesis.model.dynamics.peak_forces import DesignForces
 from synthesis.model.linkage.answer import (
     LAYOUT_FIELD,
     PEAKS_FIELD,
+    BuildMetrics,
     FourbarMechanism,
     Layout,
     LinkageResult,
     Skeleton,
     TargetInput,
-    UsedRange,
 )
 
 
@@ -43,7 +43,7 @@ class SteeringPosition(TargetInput):
     error: Angle = Field(description="outer − required.")
 
 
-class SteeringMetrics(UsedRange):
+class SteeringMetrics(BuildMetrics):
     """Measured properties of a steering mechanism."""
 
     steering_error: Angle = Field(description="Maximum magnitude of the error up to the lock, to both sides, degrees.")
@@ -58,6 +58,11 @@ class SteeringMetrics(UsedRange):
     min_transmission_angle: Angle = Field(description="Over the whole range, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     size: Length = Field(description="Diagonal of the box around all joints in the straight position.")
+    tie_rod_clearance: Length | None = optional_field(
+        "Distance of the tie rod's pins from the inner faces of the wheels, across the vehicle; negative if they reach "
+        "into the wheels. Without `wheel_width` the wheels are 0.12 of the track wide; without a track they begin at "
+        "the kingpins. Only for Ackermann's linkages."
+    )
     bar_travel: Length | None = optional_field("Travel of Davis's bar, to each side.")
 
 

@@ -28,6 +28,7 @@ steering-best-error =
         [one] Das beste von { $count } Lenktrapez nach Ackermann hat einen Lenkfehler von { $error }°.
        *[other] Das beste von { $count } Lenktrapezen nach Ackermann hat einen Lenkfehler von { $error }°.
     }
+steering-inside-wheels-first = Zuerst stehen Lenktrapeze, deren Spurstange innerhalb der Räder bleibt.
 steering-davis-is-exact = Davis' Lenkung lenkt bei jedem Winkel richtig.
 steering-none-exists = Es gibt keinen Entwurf.
 steering-none-found = Es wurde kein Entwurf gefunden.

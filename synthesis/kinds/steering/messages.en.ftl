@@ -26,6 +26,7 @@ steering-best-error =
         [one] The best of { $count } Ackermann linkage has a steering error of { $error }°.
        *[other] The best of { $count } Ackermann linkages has a steering error of { $error }°.
     }
+steering-inside-wheels-first = Linkages whose tie rod keeps inside the wheels are listed first.
 steering-davis-is-exact = Davis's gear steers correctly at every angle.
 steering-none-exists = No design exists.
 steering-none-found = No design was found.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import math
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -13,6 +14,10 @@ from synthesis.model.problem import Contradiction, PositiveLength, Range, Sizabl
 
 DEFAULT_ARM_LIMITS = (0.1, 0.25)
 """Default minimum and maximum length of the steering arms, in distances of the kingpins."""
+
+
+DEFAULT_WHEEL_WIDTH = 0.12
+"""Width of usual wheels, as a share of the track: 175 mm for a track of 1.45 m."""
 
 
 class ArmLimits(Range):
@@ -46,6 +51,11 @@ class SteeringProblem(LinkageProblem):
         default=None,
         description="Distance between the front wheels; for the turning circle. By default the pivot distance.",
     )
+    wheel_width: PositiveLength | None = Field(
+        default=None,
+        description="Width of the front wheels, with clearance on both sides. The pins of a tie rod must then keep "
+        "inside the wheels; otherwise linkages that do so for a usual width come first.",
+    )
     lock: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=90.0), Sizable] = Field(
         description="Maximum angle of the inner wheel, degrees."
     )
@@ -71,6 +81,33 @@ class SteeringProblem(LinkageProblem):
     def sides(self) -> tuple[Literal["behind", "ahead"], ...]:
         """Allowed sides of the tie rod."""
         return ("behind", "ahead") if self.tie_rod == "any" else (self.tie_rod,)
+
+    def measure_error(self, design: Any) -> float:
+        """Return the maximum steering error, radians."""
+        return math.radians(design.metrics.steering_error)
+
+    @property
+    def error_unit(self) -> tuple[float, str]:
+        """Errors are written in degrees."""
+        return math.degrees(1.0), "°"
+
+    def classify_design(self, design: Any) -> int:
+        """Return 0 for a linkage with its tie rod inside the wheels, 1 for other linkages, 2 for a gear with slides."""
+        if design.mechanism.skeleton.slides:
+            return 2
+        return int(design.metrics.tie_rod_clearance < 0.0)
+
+    @property
+    def wheel_face(self) -> float:
+        """Distance of the inner face of a wheel from its kingpin, length units; negative inside the kingpins.
+
+        Without a track the wheels may begin at the kingpins.
+        """
+        if self.track is None and self.wheel_width is None:
+            return 0.0
+        track = self.track or self.pivot_distance
+        width = DEFAULT_WHEEL_WIDTH * track if self.wheel_width is None else self.wheel_width
+        return 0.5 * (track - self.pivot_distance - width)
 
     @property
     def input_slides(self) -> bool:

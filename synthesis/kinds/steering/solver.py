@@ -12,6 +12,7 @@ from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
 from synthesis.model.kind import Progress
 from synthesis.results.candidate_log import CandidateLog
+from synthesis.results.practicality import is_judged
 from synthesis.results.ranking import rank_designs
 
 
@@ -36,7 +37,7 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
     return SteeringResult(
         designs=sifting.select_designs(partial(_rank_designs, problem.rank_by)),
         search=sifting.build_search("steering", complete=complete),
-        summary=join_messages([_describe_result(sifting, complete=complete), *remarks]),
+        summary=join_messages([_describe_result(problem, sifting, complete=complete), *remarks]),
     )
 
 
@@ -55,12 +56,15 @@ def _get_steering_error(design: SteeringDesign) -> float:
     return design.metrics.steering_error
 
 
-def _describe_result(sifting: CandidateLog[SteeringDesign], *, complete: bool) -> str:
+def _describe_result(problem: SteeringProblem, sifting: CandidateLog[SteeringDesign], *, complete: bool) -> str:
     passed = sifting.passed
     fourbars = [design.metrics.steering_error for design in passed if design.mechanism.type == "fourbar"]
     text = []
     if fourbars:
         text.append(compose("steering-best-error", count=len(fourbars), error=f"{min(fourbars):.4f}"))
+    clearances = [clear for design in passed if (clear := design.metrics.tie_rod_clearance) is not None]
+    if is_judged(problem) and clearances and min(clearances) < 0.0 <= max(clearances):
+        text.append(compose("steering-inside-wheels-first"))
     if any(design.mechanism.type == "davis" for design in passed):
         text.append(compose("steering-davis-is-exact"))
     if not passed:

@@ -28,10 +28,10 @@ from synthesis.kinds.steering.design import (
 )
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import ANGLE
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.conversion import build_driven_fourbar
-from synthesis.verification.checks import check_maximum
+from synthesis.verification.checks import check_maximum, check_minimum
 from synthesis.verification.constraints import check_constraints
 from synthesis.verification.measures import list_link_lengths, measure_linkage
 from synthesis.verification.reconstruction import rebuild_mechanism
@@ -157,6 +157,8 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         used=(float(driven.inputs[0]), float(driven.inputs[-1])),
         slides=not is_fourbar,
     )
+    # The arm turns with its wheel, so that their distance is the same at every angle.
+    clearance = problem.wheel_face - (joints["O2"].real - joints["A"].real) if is_fourbar else None
     metrics = SteeringMetrics(
         steering_error=worst,
         correct_at=_find_sign_changes(np.degrees(half.inner), half.error) if worst > MAX_EXACT_ERROR else [],
@@ -166,6 +168,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         tie_rod="behind" if behind else "ahead",
         turning_radius=_compute_turning_radius(problem, float(compute_outer_angle(lock, ratio))),
         **measures.select_fields(SteeringMetrics),
+        tie_rod_clearance=clearance,
         bar_travel=None if is_fourbar else float(np.abs(driven.inputs).max()),
     )
     checks = [
@@ -173,6 +176,8 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         Check(name="same_branch", passed=driven.on_branch),
     ]
     checks += _check_error(problem, worst, exact=not is_fourbar)
+    if clearance is not None and problem.wheel_width is not None:
+        checks.append(check_minimum("tie_rod_clearance", clearance, 0.0, LENGTH))
     fixed = [joints.pop(name) for name in ("O2", "O4")]
     of_constraints = check_constraints(problem.constraints, measures, fixed, list(joints.values()))
     checks += [check for check in of_constraints if check.name != "same_branch"]  # always checked above

@@ -72,6 +72,9 @@ class StraightLineMetrics(MotionMetrics):
         description="Rotation of the input from the line's start to its end, degrees, with its sign."
     )
     moving_links: int
+    runs_on_slide: bool = Field(
+        description="Whether the mechanism itself runs on a straight slide, as Scott-Russell's does."
+    )
     cycle_transmission_angle: Angle | None = optional_field(
         "Minimum transmission angle over the full turn of an input that turns through, degrees."
     )

@@ -27,6 +27,7 @@ straight_line-mechanisms-found =
         [one] { $count } Geradführung gefunden.
        *[other] { $count } Geradführungen gefunden.
     }
+straight_line-runs-on-slide = Der Lenker nach Scott-Russell läuft selbst auf einer geraden Führung.
 straight_line-first-is-exact =
     Die erste, nach { $mechanism }, folgt der Geraden genau; ihre Geschwindigkeit schwankt um { $variation } %.
 straight_line-first-stays-in-strip =

@@ -24,6 +24,7 @@ straight_line-mechanisms-found =
         [one] { $count } straight-line mechanism found.
        *[other] { $count } straight-line mechanisms found.
     }
+straight_line-runs-on-slide = Scott-Russell's linkage itself runs on a straight slide.
 straight_line-first-is-exact =
     The first, { $mechanism }'s, follows the line exactly; its velocity varies by { $variation } %.
 straight_line-first-stays-in-strip =

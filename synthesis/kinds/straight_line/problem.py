@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
@@ -113,10 +113,14 @@ class StraightLineProblem(LinkageProblem):
         """Return the rotation of the input for a type, degrees."""
         return DEFAULT_RANGE[mechanism] if self.crank_range is None else self.crank_range
 
-    @property
-    def error_measure(self) -> str | None:
-        """The name of the optimized metric, if it is not the default."""
-        return "velocity_variation" if self.optimize == "velocity" else None
+    def measure_error(self, design: Any) -> float:
+        """Return the optimized measure: the strip's width as a share of the length, or the variation of velocity."""
+        metrics = design.metrics
+        return float(0.01 * (metrics.velocity_variation if self.optimize == "velocity" else metrics.straightness_error))
+
+    def classify_design(self, design: Any) -> int:
+        """Return 1 for a linkage that itself needs a straight guide, otherwise 0."""
+        return int(design.metrics.runs_on_slide)
 
     def find_contradictions(self) -> list[Contradiction]:
         """Return ranges that a type cannot have, and requests that exclude one another."""

@@ -100,10 +100,11 @@ def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> Str
         sifting.reject("no_such_linkage", not candidates)
         sifting.verify_candidates(candidates, partial(_verify_best_side, problem))
     progress(1.0, compose("straight_line-verified"))
+    designs = sifting.select_designs(partial(_rank_designs, problem))
     return StraightLineResult(
-        designs=sifting.select_designs(partial(_rank_designs, problem)),
+        designs=designs,
         search=sifting.build_search(compose("straight_line-method")),
-        summary=_describe_result(problem, sifting),
+        summary=_describe_result(designs, sifting),
     )
 
 
@@ -293,14 +294,16 @@ def _build_mechanism(
     )
 
 
-def _describe_result(problem: StraightLineProblem, sifting: CandidateLog[StraightLineDesign]) -> str:
+def _describe_result(designs: list[StraightLineDesign], sifting: CandidateLog[StraightLineDesign]) -> str:
     if not sifting.passed:
         return compose("straight_line-none-found", reasons=sifting.format_reasons())
-    best = _rank_designs(problem, sifting.passed)[0].metrics
+    best = designs[0].metrics
     name, variation = best.family.replace("_", "-").title(), f"{best.velocity_variation:.3g}"
     if best.straightness_error <= ROUNDING_PERCENT:
         first = compose("straight_line-first-is-exact", mechanism=name, variation=variation)
     else:
         width = f"{best.straightness_error:.3g}"
         first = compose("straight_line-first-stays-in-strip", mechanism=name, width=width, variation=variation)
-    return join_messages([compose("straight_line-mechanisms-found", count=len(sifting.passed)), first])
+    guided = any(design.metrics.runs_on_slide for design in designs)
+    remark = compose("straight_line-runs-on-slide") if guided else ""
+    return join_messages([compose("straight_line-mechanisms-found", count=len(sifting.passed)), first, remark])

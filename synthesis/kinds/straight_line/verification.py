@@ -129,6 +129,7 @@ def verify_straight_line(
         middle_velocity=driven.middle_velocity,
         input_rotation=math.degrees(sense * span),
         moving_links=len(mechanism.links) - 1,
+        runs_on_slide=bool(mechanism.slides),
         cycle_transmission_angle=whole,
         **measures.select_fields(StraightLineMetrics),
     )

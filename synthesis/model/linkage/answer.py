@@ -283,7 +283,27 @@ class UsedRange(Answer):
     )
 
 
-class MotionMetrics(UsedRange):
+class BuildMetrics(UsedRange):
+    """Measures of whether a linkage can be built (docs/methods/ranking.md), and the motion over which it was verified.
+
+    They hold for the motion for which parts are made: the full cycle of an input that turns through, otherwise the
+    verified motion, unless `layout.over` requests one of the two.
+    """
+
+    min_pin_distance: Length | None = optional_field(
+        "Minimum distance of two different pins of one link or of the ground, length units."
+    )
+    max_link_width: Length | None = optional_field(
+        "Maximum width of the links, with pins as wide, for which the linkage can be arranged in planes, length units; "
+        "0 if no arrangement in planes exists. Left out if the linkage has too many plates to arrange."
+    )
+    relative_link_width: float | None = optional_field(
+        "`max_link_width` divided by the longest distance of two joints of one link. Below 0.02 a design counts as one "
+        "that cannot be built."
+    )
+
+
+class MotionMetrics(BuildMetrics):
     """Measured properties of every driven linkage (:class:`synthesis.verification.measures.Measures`), for every task.
 
     Angles refer to the motion over which the design was verified: from the first target to the last, or the whole turn

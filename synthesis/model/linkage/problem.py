@@ -307,7 +307,18 @@ class LinkageProblem(ProblemBase):
             return [Contradiction("/manufacture", made)]
         return [Contradiction(f"/manufacture{path}", detail) for path, detail in self.manufacture.find_errors(made)]
 
+    def measure_error(self, _design: Any) -> float:
+        """Return the error of a design as a share of the task's size, or in radians.
+
+        It is 0 if errors do not matter: for exact tasks, and within tolerances.
+        """
+        return 0.0
+
     @property
-    def error_measure(self) -> str | None:
-        """Field of the metrics that measures the error of a design, if it depends on the task."""
-        return None
+    def error_unit(self) -> tuple[float, str]:
+        """Factor that converts an error to the unit in which summaries write it, and that unit."""
+        return 100.0, " %"
+
+    def classify_design(self, _design: Any) -> int:
+        """Return a class of the design: in the default order, smaller classes precede larger ones."""
+        return 0

@@ -85,14 +85,16 @@ def test_shafts_on_both_sides_may_be_stubs(client):
 
 
 def test_wide_links_thick_pins_and_gaps_get_in_the_way(client):
-    (plain, *_), fields = layouts(client, QUICK_RETURN), {"link_width": 0.9, "gap": 0.6}
+    # Pins that do not keep the gap fail a check, so that their designs are listed on request only.
+    problem = {**QUICK_RETURN, "include_failed": True}
+    (plain, *_), fields = layouts(client, problem), {"link_width": 0.9, "gap": 0.6}
     for field, value in fields.items():
-        (changed, *_) = layouts(client, QUICK_RETURN, **{field: value})
+        (changed, *_) = layouts(client, problem, **{field: value})
         assert len(changed["crossings"]) > len(plain["crossings"]), field
-    (wide, *_) = layouts(client, QUICK_RETURN, link_width=0.9)
-    (thick, *_) = layouts(client, QUICK_RETURN, link_width=0.9, pin_diameter=0.9)
+    (wide, *_) = layouts(client, problem, link_width=0.9)
+    (thick, *_) = layouts(client, problem, link_width=0.9, pin_diameter=0.9)
     assert {tuple(clash["parts"]) for clash in thick["clashes"]} > {tuple(clash["parts"]) for clash in wide["clashes"]}
-    (stout, *_) = layouts(client, QUICK_RETURN, thickness=7.0)
+    (stout, *_) = layouts(client, problem, thickness=7.0)
     assert stout["height"] - plain["height"] == pytest.approx(2.0 * plain["count"])
 
 

@@ -15,6 +15,8 @@ from synthesis.kinds.path import type_selection
 from synthesis.kinds.path.design import PathResult
 from synthesis.model.answer import Search
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
+from synthesis.results.buildability import MIN_RELATIVE_WIDTH
+from synthesis.results.practicality import EXTREME_LINK_RATIO, JAMMING_ANGLE
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.support.service.answers import drawn, finished
@@ -187,8 +189,17 @@ def test_moving_pivots_full_turns_the_order_and_those_that_failed_are_as_stated(
         assert inside or not design["verification"]["passed"]
         assert checks["full_rotation"]
     assert once_round(kept[0]).branch > 0.0
+    # Linkages that cannot be built, or that jam, are last in any order.
+    workable = [
+        design["metrics"]["relative_link_width"] >= MIN_RELATIVE_WIDTH
+        and design["metrics"]["min_transmission_angle"] >= JAMMING_ANGLE
+        and design["metrics"]["link_ratio"] <= EXTREME_LINK_RATIO
+        for design in kept
+    ]
+    assert workable == sorted(workable, reverse=True)
     sizes = [design["metrics"]["size"] for design in kept]
-    assert sizes == sorted(sizes)
+    for own in (sizes[: sum(workable)], sizes[sum(workable) :]):
+        assert own == sorted(own)
     quality = [design["metrics"]["quality"] for design in kept]
     assert quality != sorted(quality, reverse=True)
 

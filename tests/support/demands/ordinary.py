@@ -46,8 +46,15 @@ def _buildable(result: Any) -> bool:
         and (first.metrics.link_ratio <= RATIO or "ratio" in result.summary)
         and (not _even(first) or "task's size" in result.summary)
     )
-    near = [design for design in result.designs if measure_error(design) <= error]
+    near = [design for design in result.designs if measure_error(design) <= error and _comparable(first, design)]
     return told and not any(map(_sound, near)) and (_even(first) or not any(map(_even, near)))
+
+
+def _comparable(first: Any, design: Any) -> bool:
+    """Linkages of a vehicle come before gears with slides, and tie rods inside the wheels before others, anyway."""
+    if not hasattr(design.metrics, "steering_error"):
+        return True
+    return design.mechanism.type == first.mechanism.type and (design.metrics.tie_rod_clearance or 0.0) >= 0.0
 
 
 def _even(design: Any) -> bool:

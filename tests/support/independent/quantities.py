@@ -24,6 +24,10 @@ NOT_MEASURED = {
     "metrics.base": "what the solver calls the design",
     "metrics.input_side": "what the solver calls the design",
     "metrics.moving_links": "a count of the skeleton's links",
+    "metrics.runs_on_slide": "whether the skeleton has slides",
+    "metrics.min_pin_distance": "compared with layouts in planes",
+    "metrics.max_link_width": "compared with layouts in planes",
+    "metrics.relative_link_width": "compared with layouts in planes",
     "cognates.side": "what the answer calls it",
     "dials.input.at": "a dimension, by which the targets are measured",
     "dials.input.place": "a dimension, by which the targets are measured",
@@ -145,11 +149,11 @@ COMPARED: dict[str, frozenset[str]] = {
             """
             metrics.steering_error metrics.correct_at metrics.outer_lock metrics.arm_length metrics.arm_angle
             metrics.tie_rod metrics.turning_radius metrics.min_transmission_angle metrics.link_ratio metrics.size
-            metrics.bar_travel metrics.used_range metrics.used_stroke mechanism.links
+            metrics.bar_travel metrics.tie_rod_clearance metrics.used_range metrics.used_stroke mechanism.links
             targets.input_angle targets.input_place targets.inner targets.outer targets.required targets.error
             checks.same_branch checks.visits_in_order checks.transmission_angle checks.grashof checks.shortest_link
             checks.longest_link checks.link_ratio checks.fixed_pivot_region checks.moving_pivot_region
-            checks.reaches_locks checks.steers_correctly checks.steering_error
+            checks.reaches_locks checks.steers_correctly checks.steering_error checks.tie_rod_clearance
             checks.fixed_pivot_zones checks.moving_pivot_zones checks.box checks.obstacles
             """,
         ),

@@ -333,6 +333,7 @@ def _steering(rng: np.random.Generator) -> Statement:
         "track": distance + float(rng.uniform(0.0, 300.0)),
         "lock": float(rng.uniform(25.0, 42.0)),
         "max_steering_error": 4.0,
+        "wheel_width": 1.0,
         "constraints": {"max_link_ratio": 12.0, "min_transmission_angle": 5.0},
     }
 

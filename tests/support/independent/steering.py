@@ -98,6 +98,11 @@ def compare_steering(beside: Beside, stated: dict[str, Any]) -> None:
     lean = math.degrees(math.atan(inward * pin.real / abs(pin.imag))) * (1.0 if pin.imag < 0.0 else -1.0)
     beside.metric("arm_angle", lean, 90.0)
     beside.same("metrics.tie_rod", design.metrics.tie_rod, "behind" if pin.imag < 0.0 else "ahead")
+    track = stated.get("track", stated["pivot_distance"])
+    wheel = stated.get("wheel_width", 0.12 * track if "track" in stated else 0.0)
+    face = 0.5 * (track - stated["pivot_distance"] - wheel)
+    beside.metric("tie_rod_clearance", face + inward * pin.real, abs(pin))
+    beside.check("tie_rod_clearance", face + inward * pin.real, abs(pin))
     beside.metric("bar_travel", max(map(abs, ends)), max(map(abs, ends)))
     compare_linkage(beside, stated, drive, Used((low, high), None, drive.home, None))
 

@@ -178,8 +178,8 @@ class GearTrainBase(ProblemBase):
     )
     rank_by: Literal["error", "size"] = Field(
         default="error",
-        description="`error`: the nearest first, and the smallest of equally near ones. `size`: the smallest first, of "
-        "the trains within the tolerance, or within 1 % by default.",
+        description="`error`: the nearest first; of equally near ones those without undercut teeth, and the smallest "
+        "of these. `size`: the smallest first, of the trains within the tolerance, or within 1 % by default.",
     )
     size: Literal["total_teeth", "largest_gear"] = "total_teeth"
 

@@ -73,9 +73,7 @@ from synthesis.kinds.path.results import select_distinct_designs as designs_that
 from synthesis.kinds.path.task.ranking import (
     ERROR_TOLERANCE,
     FAR_REASON,
-    MAX_LINK_RATIO,
     MIN_NEAREST_SHARE,
-    explain_choice,
     rank_by_nearness,
     select_near,
 )
@@ -85,6 +83,7 @@ from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
 from synthesis.model.linkage.problem import LengthLimits
 from synthesis.results.candidate_log import CandidateLog, report_candidates
+from synthesis.results.practicality import MAX_LINK_RATIO
 from synthesis.results.ranking import select_distinct
 
 DRAW_COUNTS = {
@@ -146,15 +145,14 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     # Sound but inaccurate designs are counted as rejected instead of silently dropped.
     sifting.withdraw(select_near(sifting.passed, problem), FAR_REASON)
     progress(1.0, compose("path-verified"))
+    designs = sifting.select_designs(
+        partial(rank_by_nearness, problem=problem),
+        partial(designs_that_differ, count=problem.max_designs, apart=DESIGN_DUPLICATE_TOLERANCE * problem.task_size),
+    )
     return PathResult(
-        designs=sifting.select_designs(
-            partial(rank_by_nearness, problem=problem),
-            partial(
-                designs_that_differ, count=problem.max_designs, apart=DESIGN_DUPLICATE_TOLERANCE * problem.task_size
-            ),
-        ),
+        designs=designs,
         search=sifting.build_search("curve_match"),
-        summary=_describe_result(problem, sifting, sweep),
+        summary=_describe_result(problem, designs, sifting, sweep),
         sweep=sweep,
     )
 
@@ -398,7 +396,9 @@ def _verify_linkage(
     return design if design is None or at is None else design.model_copy(update={"placement": at})
 
 
-def _describe_result(problem: PathProblem, sifting: CandidateLog[PathDesign], sweep: CurveSweep | None) -> str:
+def _describe_result(
+    problem: PathProblem, designs: Sequence[PathDesign], sifting: CandidateLog[PathDesign], sweep: CurveSweep | None
+) -> str:
     if sweep is None:
         sentences = [
             compose("path-curve-fitted-on-pivots"),
@@ -410,8 +410,7 @@ def _describe_result(problem: PathProblem, sifting: CandidateLog[PathDesign], sw
             compose("path-designs-and-cognates-passed", passed=sifting.accepted, count=sifting.candidates),
         ]
     if sifting.passed:
-        ordered = rank_by_nearness(sifting.passed, problem)
-        best = ordered[0].metrics
+        best = designs[0].metrics
         sentences += [
             compose(
                 "path-best-curve",
@@ -419,7 +418,6 @@ def _describe_result(problem: PathProblem, sifting: CandidateLog[PathDesign], sw
                 max_distance=f"{best.max_distance:.3g}",
                 unit=problem.length_unit,
             ),
-            explain_choice(ordered, problem),
             "" if sweep is None else compose("path-cognates-ranked"),
         ]
     return join_sentences([*sentences, sifting.describe_reasons()])

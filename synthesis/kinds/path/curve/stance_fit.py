@@ -54,11 +54,11 @@ from synthesis.kinds.path.residuals.stance import (
     compute_fourbar_stance_rows,
     compute_simple_stance_rows,
 )
-from synthesis.kinds.path.task.ranking import MAX_LINK_RATIO, USABLE_ANGLE
 from synthesis.kinds.path.task.target_curve import TargetCurve
 from synthesis.numerics.augmented_lagrangian import descend_constrained
 from synthesis.numerics.portions import run_in_portions
 from synthesis.numerics.status import Status
+from synthesis.results.practicality import MAX_LINK_RATIO, MIN_USABLE_ANGLE
 
 TIGHTENING_SHARE = 0.97
 """Share of the required flatness, and of the permitted speed deviation, that serves as the aim."""
@@ -165,7 +165,7 @@ def find_stance_fits(
     demands = [setting]
     # Without a required angle a usable one is tried as well, as in curve matching.
     if not math.isfinite(setting[LEAST_ANGLE]) and problem.rank_by != "accuracy":
-        demands.append(tighten_to_usable(setting, USABLE_ANGLE, MAX_LINK_RATIO))
+        demands.append(tighten_to_usable(setting, MIN_USABLE_ANGLE, MAX_LINK_RATIO))
     tasks = [(fit, one) for fit in begun for one in demands]
     ended: list[Fit | None] = [None] * len(tasks)
 

@@ -51,7 +51,6 @@ from synthesis.kinds.path.results import join_sentences
 from synthesis.kinds.path.task.ranking import (
     EQUAL_ERROR_RATIO,
     FAR_REASON,
-    MAX_LINK_RATIO,
     build_ordering,
     drop_straying,
     is_exact,
@@ -70,6 +69,7 @@ from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import EightbarMechanism, SixbarMechanism
 from synthesis.model.linkage.conversion import to_complex
 from synthesis.results.candidate_log import CandidateLog, report_candidates
+from synthesis.results.practicality import MAX_LINK_RATIO
 from synthesis.results.ranking import select_distinct
 from synthesis.results.simplest_type import SOUND_TRANSMISSION_ANGLE, select_passing
 

@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable
 from functools import partial
 
-from kinematics.message import compose
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.results.ranking import rank_designs, select_best, sort_designs
+from synthesis.results.ranking import rank_designs, sort_designs
 
 EQUAL_ERROR_RATIO, ACCURATE_ERROR_RATIO, ERROR_TOLERANCE = 1.1, 1.001, 1e-9
 """Factors within which errors count as equal, so that quality decides: in the default order, and in the order by
@@ -25,12 +24,8 @@ FAR_REASON = "far_from_the_curve"
 TRADE_ERROR_RATIO = 2.0
 """Designs whose error is within this factor of the minimum may be ranked by other criteria."""
 
-SOUND_ANGLE, USABLE_ANGLE, MAX_LINK_RATIO = 30.0, 20.0, 10.0
-"""Minimum transmission angles, degrees, of a sound and of a usable linkage, and the maximum link ratio of both. If the
-problem sets no such limits, linkages that satisfy these come first."""
-
 STEP_ROUNDING = 1e-6
-"""Allowance for rounding: a share of the width of an error class, and relative to the limits of usability."""
+"""Allowance for rounding, as a share of the width of an error class."""
 
 
 def compute_error(design: PathDesign, problem: PathProblem) -> float:
@@ -65,9 +60,9 @@ def drop_straying(designs: list[PathDesign], problem: PathProblem) -> list[PathD
 def rank_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
     """Rank designs in the requested order: the nearest first, and by quality among those equally near.
 
-    For whole curves without a required transmission angle, sound linkages come before others if their error is within
-    twice the minimum, and usable ones before the rest. If size or transmission angle is requested, it decides among
-    designs within twice the minimum. Within tolerances all are near enough, and the requested criterion decides alone.
+    Practicality is compared with nearness in :mod:`synthesis.results.practicality`, as for all kinds. If size or
+    transmission angle is requested, it decides among designs within twice the minimum. Within tolerances all are near
+    enough, and the requested criterion decides alone.
     """
     # Within tolerances the error does not matter unless it is requested.
     if problem.tolerances is not None and problem.rank_by != "accuracy":
@@ -85,15 +80,10 @@ def rank_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[Pa
     if problem.rank_by in ("size", "transmission_angle"):
         return rank_designs(designs, problem.rank_by, group=is_far)
 
-    def rank_usability(design: PathDesign) -> int:
-        return _GRADE_COUNT if is_far(design) else classify_usability(design)
-
-    # Ranking is stable: equal grades and classes stay in the order of their errors.
+    # Ranking is stable: equal classes and qualities stay in the order of their errors.
     nearest_first = sort_designs(designs, partial(compute_error, problem=problem))
     own = {"quality": classify_error, "accuracy": classify_error}
-    return rank_designs(
-        nearest_first, problem.rank_by, own, group=rank_usability if is_usable_preferred(problem) else None
-    )
+    return rank_designs(nearest_first, problem.rank_by, own)
 
 
 def is_exact(design: PathDesign) -> bool:
@@ -114,45 +104,3 @@ def build_ordering(problem: PathProblem) -> Callable[[list[PathDesign]], list[Pa
         return sort_designs([*exact, *fits])
 
     return sort_exact_first
-
-
-_GRADE_COUNT = 2
-
-
-def is_usable_preferred(problem: PathProblem) -> bool:
-    """Return whether usable linkages come before nearer ones that are not usable."""
-    free = problem.constraints.min_transmission_angle is None
-    return problem.is_matched and problem.rank_by == "quality" and free
-
-
-def classify_usability(design: PathDesign) -> int:
-    """Return 0 for a sound linkage, 1 for a usable one, 2 for others."""
-    metrics = design.metrics
-    if metrics.link_ratio > MAX_LINK_RATIO * (1.0 + STEP_ROUNDING) or metrics.min_transmission_angle < USABLE_ANGLE * (
-        1.0 - STEP_ROUNDING
-    ):
-        return _GRADE_COUNT
-    return 0 if metrics.min_transmission_angle >= SOUND_ANGLE * (1.0 - STEP_ROUNDING) else 1
-
-
-def explain_choice(designs: list[PathDesign], problem: PathProblem) -> str:
-    """Explain in a sentence why the first design is not the nearest one; empty if they are equally near.
-
-    Other defects of the design are described in the same way for all kinds: see
-    :mod:`synthesis.results.practicality`.
-    """
-    if not designs or not is_usable_preferred(problem):
-        return ""
-    first, nearest = designs[0], select_best(designs, partial(compute_error, problem=problem))
-    # The first is practically the nearest: there is nothing to explain.
-    if compute_error(first, problem) <= EQUAL_ERROR_RATIO * compute_error(nearest, problem):
-        return ""
-    chosen, other = first.metrics, nearest.metrics
-    return compose(
-        "path-first-for-transmission",
-        transmission_angle=f"{chosen.min_transmission_angle:.1f}",
-        rms_distance=f"{other.rms_distance:.3g}",
-        unit=problem.length_unit,
-        nearest_angle=f"{other.min_transmission_angle:.1f}",
-        link_ratio=f"{other.link_ratio:.3g}",
-    )

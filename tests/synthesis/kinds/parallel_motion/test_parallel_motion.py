@@ -14,6 +14,7 @@ from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.model.problem import ContradictionError
 from synthesis.registry import get_first_example, parse_problem
+from synthesis.results.buildability import MIN_RELATIVE_WIDTH
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
 from tests.support.synthesis.driving import constraints_of
@@ -95,7 +96,7 @@ def test_the_body_translates_along_the_curve(name: str) -> None:
 def test_cognates_are_other_sixbars_of_one_curve() -> None:
     designs = solved(stated(*LINKAGES["crank-rocker"])).designs
     assert {design.metrics.base for design in designs} >= {"source", "right_cognate"}
-    assert designs[0].metrics.full_rotation
+    assert any(design.metrics.full_rotation for design in designs)
     only = solved(stated(*LINKAGES["crank-rocker"], include_cognates=False)).designs
     assert [design.metrics.base for design in only] == ["source"]
 
@@ -154,7 +155,13 @@ def test_the_order_follows_its_ranking_at_every_place(rank_by: str) -> None:
     values = [getattr(design.metrics, key) for design in designs]
     assert len(values) == 4
     assert len({design.metrics.full_rotation for design in designs}) == 2
-    assert values == sorted(values, reverse=rank_by != "size")
+    # Sixbars that cannot be built come last in any order: here the ones with the best quality and angle.
+    buildable = [design.metrics.relative_link_width >= MIN_RELATIVE_WIDTH for design in designs]
+    assert buildable == sorted(buildable, reverse=True)
+    count = sum(buildable)
+    assert values == [
+        part for own in (values[:count], values[count:]) for part in sorted(own, reverse=rank_by != "size")
+    ]
 
 
 @pytest.mark.slow

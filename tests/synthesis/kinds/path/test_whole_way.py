@@ -56,8 +56,9 @@ def test_no_design_that_is_wild_between_the_points_is_offered(fitted):
     assert result.designs
     for design in result.designs:
         assert design.metrics.excursion <= design.metrics.rms_distance
+    # Cognates have one error to rounding, and then quality decides.
     errors = [compute_error(design, problem) for design in result.designs]
-    assert errors == sorted(errors)
+    assert errors == pytest.approx(sorted(errors))
 
 
 @pytest.mark.slow

@@ -166,6 +166,7 @@ def test_auto_gives_every_type_that_reaches_the_ratio() -> None:
     kinds = {design.mechanism.type for design in found.designs}
     assert kinds == {"slider_crank", "crank_shaper", "whitworth", "drag_link_slider"}
     assert [reach.type for reach in found.reachable] == list(SLIDING)
+    found = answer(time_ratio=1.4, stroke=50.0, rank_by="transmission_angle")
     angles = [design.metrics.min_transmission_angle for design in found.designs]
     assert angles == sorted(angles, reverse=True)
     fast = answer(time_ratio=5.0, stroke=50.0)
