@@ -163,9 +163,9 @@ bench: $(STAMP)
 docs: $(SITE)
 	$(BIN)/python -m tools.site
 
-# The tests build the site themselves.
+# One process builds the site and checks it, the other runs the tutorials.
 test-docs: $(SITE)
-	$(BIN)/pytest -m site tests/tools/test_site.py
+	$(BIN)/pytest -m site -n 2 --dist loadfile tests/tools/test_site.py tests/tools/test_tutorials.py
 
 # This rewrites tests/service/api/contract.txt. Review the difference before you commit it.
 openapi: $(STAMP)
