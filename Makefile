@@ -34,8 +34,10 @@ MULTIBODY := $(VENV)/.multibody
 SITE   := $(VENV)/.site
 CAD    := $(VENV)/.cad
 
-# Test files are distributed over two processes, in the order of tests/conftest.py.
-SPREAD := -n 2 --dist loadfile --no-loadscope-reorder
+# Test files are distributed over two processes, in the order of tests/conftest.py. On a machine with more processors:
+# make test PROCESSES=4.
+PROCESSES := 2
+SPREAD := -n $(PROCESSES) --dist loadfile --no-loadscope-reorder
 # Tests that have a target of their own are deselected. Folders with nothing else are not even imported.
 APART := not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad
 BESIDES := $(addprefix --ignore tests/,browser cad cluster faults node)
@@ -161,9 +163,9 @@ bench: $(STAMP)
 docs: $(SITE)
 	$(BIN)/python -m tools.site
 
-# The tests build the site themselves.
+# One process builds the site and checks it, the other runs the tutorials.
 test-docs: $(SITE)
-	$(BIN)/pytest -m site tests/tools/test_site.py
+	$(BIN)/pytest -m site -n 2 --dist loadfile tests/tools/test_site.py tests/tools/test_tutorials.py
 
 # This rewrites tests/service/api/contract.txt. Review the difference before you commit it.
 openapi: $(STAMP)

@@ -28,6 +28,9 @@ def pytest_addoption(parser):
         help="what the service runs on: SQLite and workers of its own, or PostgreSQL and worker hosts",
     )
     parser.addoption(
+        "--screens", action="store_true", help="write pictures of the studio's pages to var/screens, to look at"
+    )
+    parser.addoption(
         "--campaign-minutes",
         type=float,
         default=campaign.DEFAULT_MINUTES,

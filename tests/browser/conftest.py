@@ -30,6 +30,10 @@ addEventListener("securitypolicyviolation", (event) =>
 """
 
 
+def pytest_configure(config):
+    Studio.takes_screens = config.getoption("--screens")
+
+
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     # A page has one job at a time, beside those that the worker for short ones takes.
@@ -56,6 +60,8 @@ def chromium():
 
 class Studio:
     """The page in a window, and whatever went wrong in it."""
+
+    takes_screens = False
 
     def __init__(self, browser, url, ready="#fields .field", opened="", before="", **options):
         self.url = url
@@ -107,8 +113,10 @@ class Studio:
         self.page.wait_for_selector(ANSWERED, timeout=200_000)
 
     def screen(self, name, page=None):
-        SCREENS.mkdir(parents=True, exist_ok=True)
-        (page or self.page).screenshot(path=SCREENS / f"{name}.png", full_page=True)
+        """Take a picture for people to look at, where pictures are asked for."""
+        if self.takes_screens:
+            SCREENS.mkdir(parents=True, exist_ok=True)
+            (page or self.page).screenshot(path=SCREENS / f"{name}.png", full_page=True)
 
     def close(self):
         self.context.close()

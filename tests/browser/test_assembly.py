@@ -8,7 +8,6 @@ import pytest
 from PIL import Image, ImageChops
 
 from service.parts.export.cad_available import is_installed
-from tests.browser.conftest import SCREENS
 from tests.support.browser.accessibility import violations
 from tests.support.browser.studio import state
 from tests.support.browser.taking_home import taken as taken_of_design
@@ -93,9 +92,8 @@ def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
     apart = picture(page)
     assert differs(together, apart)
     page.locator(PLACES).get_by_role("button", name="Fit", exact=True).click()
-    SCREENS.mkdir(parents=True, exist_ok=True)
     picture(page)
-    page.screenshot(path=SCREENS / "assembly.png")
+    studio.screen("assembly")
     with Image.open(taken(page, "Save picture").path()) as saved:
         assert saved.format == "PNG"
         assert coloured(saved.convert("RGB")) > 0.02 * saved.width * saved.height
@@ -176,7 +174,7 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
         assert drawn["height"] >= 140
         assert page.is_visible("#watch .player")
         picture(page)
-        page.screenshot(path=SCREENS / f"assembly-{scheme}-{width}.png")
+        studio.screen(f"assembly-{scheme}-{width}")
 
 
 def within(image, tone, x, y):

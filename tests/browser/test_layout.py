@@ -5,6 +5,7 @@ import pytest
 from synthesis.registry import KINDS, list_examples
 from tests.browser.conftest import ANSWERED
 from tests.campaign import further
+from tests.support.browser.layout import assert_in_view, inside, watch
 from tests.support.browser.studio import PLAIN, state
 from tests.support.browser.taking_home import EXAMPLES
 from tests.support.service.running import until
@@ -13,11 +14,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
 SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "tablet": (1024, 768), "phone": (390, 844)}
 EVERYWHERE = ("motion", "cam")
-"""Kinds that are looked at in every size, light and dark; the others in the first size, in the campaign in all."""
+"""Kinds that are looked at in every size, light and dark; the others in one where they are taken home, in the campaign
+in all."""
 
-OFTEN = [(kind, "desktop", "light") for kind in KINDS if kind not in EVERYWHERE] + [
-    (kind, size, scheme) for kind in EVERYWHERE for size in SIZES for scheme in ("light", "dark")
-]
+OFTEN = [(kind, size, scheme) for kind in EVERYWHERE for size in SIZES for scheme in ("light", "dark")]
 SELDOM = further(
     [
         (kind, size, scheme)
@@ -28,55 +28,6 @@ SELDOM = further(
     ],
     (),
 )
-
-WATCH = """
-window.outside = [];
-window.seen = new Set();
-const look = () => {
-  if (window.watching) {
-    const parts = {stage: "#boards", player: ".board:not(#other) .player", progress: "progress", cancel: "#cancel"};
-    for (const [name, selector] of Object.entries(parts)) {
-      const box = document.querySelector(selector)?.getBoundingClientRect();
-      if (!box?.width || !box.height) continue;
-      seen.add(name);
-      const place = document.querySelector(selector);
-      const middle = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
-      if (!place.contains(middle) && !middle?.contains(place)) outside.push(`${name} is covered`);
-      if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5) {
-        outside.push(`${name}: ${Math.round(box.left)} ${Math.round(box.top)} `
-          + `${Math.round(box.right)} ${Math.round(box.bottom)}`);
-      }
-    }
-  }
-  requestAnimationFrame(look);
-};
-requestAnimationFrame(look);
-"""
-
-COVERED = """selector => {
-  const place = document.querySelector(selector);
-  const box = place.getBoundingClientRect();
-  const middle = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
-  return !place.contains(middle) && !middle?.contains(place);
-}"""
-
-
-def inside(page, selector):
-    """Whether a part of the page lies in the window, and nothing over it."""
-    box = page.locator(selector).first.bounding_box()
-    assert box is not None, f"{selector} is not shown"
-    size = page.viewport_size
-    assert box["width"] > 0, selector
-    assert box["height"] > 0, selector
-    within = (
-        box["x"] > -0.5
-        and box["y"] > -0.5
-        and box["x"] + box["width"] < size["width"] + 0.5
-        and box["y"] + box["height"] < size["height"] + 0.5
-    )
-    assert within, (selector, box)
-    assert not page.evaluate(COVERED, selector), f"{selector} is covered"
-    return box
 
 
 @pytest.mark.parametrize(("kind", "size", "scheme"), [*OFTEN, *SELDOM])
@@ -89,42 +40,10 @@ def test_stage_and_player_and_progress_are_in_view_from_solve_to_the_end(open_st
     page.select_option("#kind", kind)
     page.select_option("#example", str(EXAMPLES.get(kind, 0)))
     inside(page, "#solve")
-    page.evaluate(f"{WATCH}; window.watching = true")
+    watch(page)
     page.click("#solve")
     page.wait_for_selector(ANSWERED, state="attached", timeout=200_000)
-    page.wait_for_selector(".moving .stage .canvas")
-    assert page.evaluate("outside") == []
-    # From Solve on the stage is there, and progress with Cancel where the job took any time.
-    seen = set(page.evaluate("[...seen]"))
-    assert "stage" in seen
-    assert ("progress" in seen) == ("cancel" in seen)
-    stage = inside(page, ".moving .stage .canvas")
-    assert stage["width"] >= 0.4 * width, "the stage is the largest part"
-    assert stage["height"] >= 0.25 * height
-    inside(page, ".moving .player button")
-    inside(page, "#scrub")
-    inside(page, "#solve")
-    # The page itself does not scroll, and is no wider than the window.
-    away = page.evaluate("""() => {
-      const whole = document.documentElement;
-      return [whole.scrollWidth - innerWidth, whole.scrollHeight - innerHeight];
-    }""")
-    assert max(away) <= 0, away
-    wide = page.locator("#statement .table").evaluate_all(
-        "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).map(one => one.textContent)"
-    )
-    assert wide == [], "what is stated lies within its panel"
-    # The drawing lies on the stage, and fills a fair part of it.
-    drawn = page.evaluate("""() => {
-      const boxes = [...document.querySelectorAll(
-        ".moving .canvas :is(.live, .wheel, .cam, .profile, .link, .drum)")].map(one => one.getBoundingClientRect())
-        // What stands upright has no width of its own.
-        .filter(one => one.width || one.height);
-      return [Math.min(...boxes.map(one => one.left)), Math.min(...boxes.map(one => one.top)),
-              Math.max(...boxes.map(one => one.right)), Math.max(...boxes.map(one => one.bottom))];
-    }""")
-    share = max((drawn[2] - drawn[0]) / stage["width"], (drawn[3] - drawn[1]) / stage["height"])
-    assert share > 0.25, "what moves can be seen"
+    assert_in_view(page)
     studio.screen(f"layout-{kind}-{size}-{scheme}")
 
 
@@ -134,7 +53,7 @@ def test_progress_and_cancel_stand_where_solve_stood(open_studio):
         page = studio.page
         state(page, {**list_examples("path")[0], "rounds": 10})
         before = inside(page, "#solve")
-        page.evaluate(f"{WATCH}; window.watching = true")
+        watch(page)
         page.click("#solve")
         page.wait_for_selector("#cancel")
         bar = inside(page, "progress")

@@ -28,20 +28,13 @@ from synthesis.registry import parse_problem
 from tests.cad.meshes import looked_through, meshed
 from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
-from tests.support.service.parts import MOTION, SLIDER
+from tests.support.service.parts import MOTION
 from tests.support.service.parts_of_geared_linkages import planted
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
 
-PROBLEMS: dict[str, dict[str, Any]] = {
-    "fourbar": MOTION,
-    "slider_crank": SLIDER,
-    "crank_shaper": {"kind": "quick_return", "time_ratio": 1.4, "stroke": 100, "max_designs": 1},
-}
-"""A linkage with turning pairs only, one whose block slides along the base, and one whose block slides along a link."""
-
 GEARED = "geared_fivebar"
-TYPES = [*PROBLEMS, GEARED]
+"""A linkage with gears of two sizes; the row of :mod:`tests.cad.every_type` has equal ones."""
 
 
 @cache
@@ -49,7 +42,8 @@ def solved(kind: str) -> tuple[Any, Any, Any]:
     if kind == GEARED:
         problem, design = planted(-2.0)
         return problem, None, design
-    problem = parse_problem(PROBLEMS[kind])
+    assert kind == "fourbar"
+    problem = parse_problem(MOTION)
     result = solve(problem, lambda _fraction, _message: None)
     assert result.designs[0].mechanism.type == kind
     return problem, result, result.designs[0]
@@ -66,9 +60,8 @@ def solids(kind: str) -> list[Any]:
     return [cad.make_solid(part) for part in assembly(kind).parts]
 
 
-@pytest.mark.parametrize("kind", TYPES)
-def test_solids_are_valid_and_as_large_as_the_model_says(kind: str) -> None:
-    for part, solid in zip(assembly(kind).parts, solids(kind), strict=True):
+def test_solids_are_valid_and_as_large_as_the_model_says() -> None:
+    for part, solid in zip(assembly(GEARED).parts, solids(GEARED), strict=True):
         assert solid.is_valid
         assert solid.volume == pytest.approx(part.volume, rel=1e-6)
         assert solid.volume > 0.0
@@ -76,11 +69,10 @@ def test_solids_are_valid_and_as_large_as_the_model_says(kind: str) -> None:
         assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
 
 
-@pytest.mark.parametrize("kind", TYPES)
-def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -> None:
+def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints() -> None:
     from build123d import GeomType, import_step
 
-    whole, made_ = assembly(kind), solids(kind)
+    whole, made_ = assembly(GEARED), solids(GEARED)
     text = cad.write_step(made_, "assembly")
     assert b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING" in text
     with tempfile.TemporaryDirectory() as folder:

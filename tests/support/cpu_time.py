@@ -24,6 +24,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from tests.support import session_folder
+
 SLOW_S = 1.0
 """CPU time of a case, in seconds, above which it must be marked ``slow``."""
 
@@ -63,6 +65,15 @@ def charge(seconds: float) -> None:
     """Add the CPU time of an answer that another case has paid for."""
     global _charged
     _charged += seconds
+
+
+def charge_server(pid: int, seconds: float) -> None:
+    """Add, in a worker of a server, the CPU time of an answer that another case has paid for."""
+    session_folder.append_line(f"charged-{pid}", repr(seconds))
+
+
+def _read_server_charges(pid: int) -> float:
+    return sum(map(float, session_folder.read_lines(f"charged-{pid}")))
 
 
 class Cost(NamedTuple):
@@ -155,10 +166,11 @@ class CpuTimePlugin:
         own = process_time() + times.children_user + times.children_system - self.kernels.seconds + _charged
         servers = 0.0
         for child in _list_children(os.getpid()):
+            seconds = _tree_seconds(child) + _read_server_charges(child)
             if child in shared_servers:
-                servers += _tree_seconds(child)
+                servers += seconds
             else:
-                own += _tree_seconds(child)
+                own += seconds
         return Cost(own, servers)
 
     @pytest.hookimpl

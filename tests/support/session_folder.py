@@ -57,6 +57,20 @@ def keep_pickle(name: str, value: object) -> None:
         _write(place, pickle.dumps(value))
 
 
+def append_line(name: str, line: str) -> None:
+    """Append a line to what other processes of the session read by this name."""
+    place = _find_place(name)
+    if place is not None:
+        with place.open("a") as file:
+            file.write(f"{line}\n")
+
+
+def read_lines(name: str) -> list[str]:
+    """Return the lines that all processes of the session have appended by this name."""
+    place = _find_place(name)
+    return place.read_text().splitlines() if place is not None and place.exists() else []
+
+
 def _find_place(name: str) -> Path | None:
     """Return the path of a file in the folder; None outside a session."""
     return Path(os.environ[VARIABLE]) / name if VARIABLE in os.environ else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import doctest
 import json
 import re
 from html.parser import HTMLParser
@@ -19,7 +18,6 @@ from tools.site.docstrings import as_markdown
 from tools.site.pages import TASKS, check_anchor
 
 ENTRIES = gallery.entries(ROOT / "docs" / "gallery")
-TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*-*.md"))
 
 
 def of_the_site(test):
@@ -138,14 +136,6 @@ def test_notebooks_have_run(made: Path) -> None:
         page = (made / "site" / "notebooks" / f"{path.stem}.html").read_text("utf-8")
         assert page.count('class="output"') >= 2
         assert "<svg" in page
-
-
-@of_the_site
-@pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
-def test_tutorials_run(path: Path) -> None:
-    outcome = doctest.testfile(str(path), module_relative=False)
-    assert outcome.attempted > 5
-    assert outcome.failed == 0
 
 
 def test_every_page_has_its_place_in_the_nav() -> None:

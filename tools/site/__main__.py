@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from service.server.app import build_api_document
@@ -20,13 +21,16 @@ def main(out: Path) -> int:
     folder = out / "pages"
     shutil.rmtree(folder, ignore_errors=True)
     pages.gathered(ROOT, folder)
-    folders = {
-        "decisions": decisions.written(ROOT / "docs" / "decisions", folder),
-        "reference/http": http_reference.written(json.loads(build_api_document()), folder),
-        "reference/python": python_reference.written(ROOT, folder),
-        "notebooks": notebooks.written(ROOT / "docs" / "notebooks", folder),
-        "gallery": gallery.written(ROOT / "docs" / "gallery", folder),
-    }
+    # The gallery is solved in processes of its own, which take longer than everything else.
+    with ThreadPoolExecutor(1) as background:
+        machines = background.submit(gallery.written, ROOT / "docs" / "gallery", folder)
+        folders = {
+            "decisions": decisions.written(ROOT / "docs" / "decisions", folder),
+            "reference/http": http_reference.written(json.loads(build_api_document()), folder),
+            "reference/python": python_reference.written(ROOT, folder),
+            "notebooks": notebooks.written(ROOT / "docs" / "notebooks", folder),
+            "gallery": machines.result(),
+        }
     template = Path(__file__).with_name("mkdocs.yml").read_text("utf-8")
     settings = out / "mkdocs.yml"
     settings.write_text(pages.settings(template, folders), encoding="utf-8")

@@ -33,7 +33,8 @@ def stated(seed):
 def test_a_service_and_this_process_give_one_answer(server):
     told = []
     with Client(server.url) as client:
-        result = client.solve(ASKED, label="both", progress=lambda share, doing: told.append((share, doing)))
+        with server.solving_anew():
+            result = client.solve(ASKED, label="both", progress=lambda share, doing: told.append((share, doing)))
         here = solve(ASKED, label="both")
         assert result.to_json() == here.to_json()
         job = server.client.get("/v1/jobs?limit=1").json()["jobs"][0]

@@ -14,6 +14,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
 from tests.support import cpu_time
+from tests.support.answers import ANEW
 
 ROOT = Path(__file__).parents[3]
 REAL = ("-m", "service.command.cli")
@@ -115,6 +116,16 @@ class RunningServer:
     def sample(self, name, **labels):
         """One sample; 0 where there is none. Tests that share a server compare it with what it was before."""
         return self.samples().get((name, *sorted(labels.items())), 0.0)
+
+    @contextmanager
+    def solving_anew(self):
+        """Let the workers of a lean server solve also what the session knows the answer to."""
+        mark = self.folder / ANEW
+        mark.touch()
+        try:
+            yield
+        finally:
+            mark.unlink()
 
     def workers(self):
         return workers_of(self.host.pid)

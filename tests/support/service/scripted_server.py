@@ -14,7 +14,6 @@ from pathlib import Path
 
 from service import warm_analysis
 from service.command.cli import main
-from synthesis import dispatch
 from synthesis.model.answer import Result, Search
 
 INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS, PYTHON, NUMBA, LAPACK, CONVEX = range(100, 111)
@@ -157,11 +156,14 @@ def die_if_told(name):
 
 # The tests import this module for its names only; the server runs it as __main__, its workers as __mp_main__.
 if __name__ in ("__main__", "__mp_main__"):
+    warm_analysis.warm_up = lambda: None
+    crash_points()
+if __name__ == "__mp_main__":
+    from synthesis import dispatch  # in workers only: a server does not import solvers
+
     dispatch.solve = solve
     dispatch.warm_up = warm_up
     dispatch.warm_up_rest = lambda: None
-    warm_analysis.warm_up = lambda: None
-    crash_points()
 if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
     time.sleep(60)  # it is killed before
 

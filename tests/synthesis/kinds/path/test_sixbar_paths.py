@@ -24,6 +24,7 @@ from synthesis.kinds.path.task.ranking import build_ordering
 from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
 from synthesis.verification.reconstruction import rebuild_mechanism
+from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.support.answers import solve
 from tests.support.synthesis.random_linkages import SIXBAR_FORMS, trace_nodes
@@ -187,14 +188,13 @@ LETTER_M = np.concatenate(
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too():
+@pytest.mark.parametrize(("mechanism", "count"), further([("watt_1", 1), ("eightbar", 2)], [("watt_1", 1)]))
+def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too(mechanism, count):
     """Fits to the points of a stroke alone used to leave it by its own size between two of them."""
-    problem = parse_problem(
-        TASK
-        | {"points": listed(LETTER_M), "closed": False, "mechanisms": ["eightbar"], "constraints": {}, "max_designs": 2}
-    )
+    stroke = {"points": listed(LETTER_M), "closed": False, "mechanisms": [mechanism], "constraints": {}}
+    problem = parse_problem(TASK | stroke | {"max_designs": count})
     designs = solve(problem).designs
-    assert designs
+    assert len(designs) == count
     for design in designs:
         turn = np.radians([target.input_angle for target in design.targets])
         followed = Loops(design.mechanism.skeleton.model_dump(mode="json")).followed(
