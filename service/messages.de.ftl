@@ -84,7 +84,7 @@ service-too-many-listeners = Zu viele Ihrer Clients verfolgen Aufträge; später
 
 service-fault-at-place = { $path }: { $reason }
 service-input-invalid = Dieser Wert ist hier nicht zulässig.
-service-wrapper-missing = Dies gehört in das Feld `{ $field }`: { $example }.
+service-wrapper-missing = Die Anfrage braucht das Feld `{ $field }` um dieses Objekt: { $example }.
 service-field-required-as = Dieses Feld ist erforderlich, etwa { $example }.
 service-list-expected-as = Erwartet wird eine Liste, etwa { $example }.
 service-object-expected-as = Erwartet wird ein Objekt, etwa { $example }.
@@ -93,10 +93,10 @@ service-input-or-list = Erwartet wird { $names } oder eine Liste, etwa { $exampl
 service-discriminator-resembles = Das Feld { $field } muss eines von diesen nennen: { $names }. Ist { $near } gemeint?
 service-unknown-field-resembles-one-of =
     Unbekanntes Feld; ist `{ $field }` gemeint? Die Felder sind { $fields } und { $last }.
-service-kind-missing = Dieses Feld angeben; möglich sind: { $names }.
+service-kind-missing = Dieses Feld ist erforderlich; möglich sind: { $names }.
 service-kind-resembles = Unbekannt; ist { $near } gemeint? Möglich sind: { $names }.
 service-kind-unsupported =
-    Das leistet der Dienst nicht; { $page } nennt, was er auslässt. Möglich sind: { $names }.
+    Das leistet der Dienst nicht; siehe { $page }. Möglich sind: { $names }.
 service-unknown-field = Unbekanntes Feld; den Namen prüfen.
 service-field-required = Dieses Feld ist erforderlich.
 service-list-expected = Erwartet wird eine Liste.

@@ -79,7 +79,7 @@ service-too-many-listeners = Too many of your clients are listening; try again.
 
 service-fault-at-place = { $path }: { $reason }
 service-input-invalid = This value is not permitted here.
-service-wrapper-missing = Put it into the field `{ $field }`: { $example }.
+service-wrapper-missing = The request needs the field `{ $field }` around this object: { $example }.
 service-field-required-as = This field is required, for example { $example }.
 service-list-expected-as = Expected a list, for example { $example }.
 service-object-expected-as = Expected an object, for example { $example }.
@@ -88,15 +88,15 @@ service-input-or-list = Expected { $names }, or a list, for example { $example }
 service-discriminator-resembles = The field { $field } must be one of: { $names }. Did you mean { $near }?
 service-unknown-field-resembles-one-of =
     Unknown field; did you mean `{ $field }`? The fields are { $fields } and { $last }.
-service-kind-missing = Give this field; it must be one of: { $names }.
+service-kind-missing = This field is required; it must be one of: { $names }.
 service-kind-resembles = Unknown; did you mean { $near }? The permitted names are: { $names }.
 service-kind-unsupported =
-    The service does not do this; { $page } lists what it leaves out. The permitted names are: { $names }.
+    The service does not support this; see { $page }. The permitted names are: { $names }.
 service-unknown-field = Unknown field; check its name.
 service-field-required = This field is required.
 service-list-expected = Expected a list.
 service-object-expected = Expected an object.
-service-string-expected = Expected a text.
+service-string-expected = Expected a string.
 service-integer-expected = Expected an integer.
 service-number-expected = Expected a number.
 service-input-not-finite = Expected a finite number.
@@ -106,39 +106,39 @@ service-input-greater-equal = The value must be at least { $limit }.
 service-input-less-than = The value must be less than { $limit }.
 service-input-less-equal = The value must be at most { $limit }.
 service-kind-unknown = Unknown; the permitted names are: { $names }.
-service-output-unknown = Type must be one of: { $names }.
+service-output-unknown = The field `type` must be one of: { $names }.
 service-unknown-field-resembles = Unknown field; did you mean `{ $field }`?
 service-unknown-field-besides-one = Unknown field; the only field is { $field }.
 service-unknown-field-besides = Unknown field; the fields are { $fields } and { $last }.
-service-string-too-short = 
+service-string-too-short =
     { $count ->
-        [one] The text must have at least { $count } character.
-       *[other] The text must have at least { $count } characters.
+        [one] The string must have at least { $count } character.
+       *[other] The string must have at least { $count } characters.
     }
-service-string-too-long = 
+service-string-too-long =
     { $count ->
-        [one] The text must have at most { $count } character.
-       *[other] The text must have at most { $count } characters.
+        [one] The string must have at most { $count } character.
+       *[other] The string must have at most { $count } characters.
     }
-service-string-mismatch = The text must match the pattern '{ $pattern }'.
+service-string-mismatch = The string must match the pattern '{ $pattern }'.
 service-discriminator-missing = The field { $field } is required.
 service-discriminator-unknown = The field { $field } must be one of: { $names }.
-service-object-too-long = 
+service-object-too-long =
     { $most ->
         [one] The object must have at most { $most } member.
        *[other] The object must have at most { $most } members.
     }
-service-list-too-long = 
+service-list-too-long =
     { $most ->
         [one] The list must have at most { $most } item, not { $count }.
        *[other] The list must have at most { $most } items, not { $count }.
     }
-service-object-too-short = 
+service-object-too-short =
     { $least ->
         [one] The object must have at least { $least } member, not { $count }.
        *[other] The object must have at least { $least } members, not { $count }.
     }
-service-list-too-short = 
+service-list-too-short =
     { $least ->
         [one] The list must have at least { $least } item, not { $count }.
        *[other] The list must have at least { $least } items, not { $count }.

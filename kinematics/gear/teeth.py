@@ -108,6 +108,10 @@ def compute_straight_depth(pressure_angle: float, dedendum: float) -> float:
     >>> round(compute_straight_depth(math.radians(20.0), 1.25), 4)
     1.0
     """
+    # A rack whose tooth comes to a point earlier has straight flanks down to there.
+    point = 0.25 * math.pi / math.tan(pressure_angle)
+    if dedendum >= point:
+        return point
     return dedendum - compute_corner_rounding(pressure_angle, dedendum) * (1.0 - math.sin(pressure_angle))
 
 

@@ -132,7 +132,7 @@ analyses-limits-unknown = limits: the reference lies where several branches meet
 analyses-motion-followed-in-part =
     valid: the links have very different lengths; the motion was followed up to the maximum number of steps, and
     positions beyond are reported as not valid although they may exist
-analyses-output-at-rest = { $field }: null where the output is at rest, a dead centre, of { $names }
+analyses-output-at-rest = { $field }: null for { $names } where the output is at rest (a dead centre)
 analyses-instant-centers-of-one-position =
     instant_centers: listed for a single position only; give it as `motion.at`
 analyses-no-pushing-leg =

@@ -103,7 +103,7 @@ def select_buildable_first(problem: LinkageProblem, designs: Sequence[Driven], c
     first: list[Driven] = []
     last: list[Driven] = []
     rest = list(designs)
-    while rest and rest[0].verification.passed and len(first) < count and len(last) <= count:
+    while rest and rest[0].verification.passed and len(first) < count and len(last) < count:
         design = measure_buildability(problem, rest.pop(0))
         (first if is_buildable(design) else last).append(design)
     # The rest is not measured here, because enough others precede it or too many cannot be built.

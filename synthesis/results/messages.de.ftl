@@ -265,18 +265,16 @@ results-ranked-by-unknown-measure =
 
 # Order of the designs by practicality; a band is the permitted multiple of the smallest error
 
-results-practical-first = Zuerst stehen Entwürfe mit einem Übertragungswinkel von mindestens { $angle }°, einem Gliedverhältnis von höchstens { $ratio } und Gliedern, die höchstens { $reach }-mal so lang wie die Größe der Aufgabe sind.
 results-no-design-practical = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
 results-no-near-design-practical = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
 results-no-design-with-even-links = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
 results-no-near-design-with-even-links = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
-results-even-links-first = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist; Entwürfe mit solchem Winkel und Verhältnis stehen zuerst.
-results-near-even-links-first = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist; Entwürfe mit solchem Winkel und Verhältnis stehen zuerst.
-results-first-for-soundness = Der erste Entwurf hat das { $factor }-Fache des kleinsten Fehlers, den Entwurf { $number } hat, dafür einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
+results-first-for-soundness = Der erste Entwurf hat das { $factor }-Fache des Fehlers von Entwurf { $number }, aber einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
+results-first-less-accurate = Entwurf { $number } ist genauer: Der erste Entwurf hat das { $factor }-Fache seines Fehlers.
 results-unbuildable-last =
     { $count ->
-        [one] Ein Entwurf ist nicht baubar und steht zuletzt: Keine Anordnung in Ebenen lässt Glieder zu, deren Breite mindestens { $share } % der Länge des längsten Gliedes ist.
-       *[other] { $count } Entwürfe sind nicht baubar und stehen zuletzt: Keine Anordnung in Ebenen lässt Glieder zu, deren Breite mindestens { $share } % der Länge des längsten Gliedes ist.
+        [one] Ein Entwurf steht zuletzt, weil er nicht baubar ist: Seine Glieder müssten schmaler als { $share } % der Länge des längsten sein oder würden in jeder Anordnung in Ebenen zusammenstoßen.
+       *[other] { $count } Entwürfe stehen zuletzt, weil sie nicht baubar sind: Ihre Glieder müssten schmaler als { $share } % der Länge des längsten sein oder würden in jeder Anordnung in Ebenen zusammenstoßen.
     }
 results-none-buildable = Keiner dieser Entwürfe ist wie üblich baubar: Die Glieder des ersten wären höchstens { $width } { $unit } breit, weniger als { $share } % seines längsten Gliedes.
 results-none-buildable-in-planes = Keiner dieser Entwürfe ist baubar: In jeder Anordnung in Ebenen stoßen Glieder oder Bolzen zusammen.

@@ -58,18 +58,16 @@ results-ranked-by-unknown-measure =
 
 # Order of the designs by practicality; a band is the permitted multiple of the smallest error
 
-results-practical-first = Designs with a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size are listed first.
 results-no-design-practical = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
 results-no-near-design-practical = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
 results-no-design-with-even-links = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
 results-no-near-design-with-even-links = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
-results-even-links-first = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
-results-near-even-links-first = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size; designs with such an angle and ratio are listed first.
-results-first-for-soundness = The first design has { $factor } times the smallest error, that of design { $number }, for a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
+results-first-for-soundness = The first design has { $factor } times the error of design { $number }, but a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
+results-first-less-accurate = Design { $number } is more accurate: the first design has { $factor } times its error.
 results-unbuildable-last =
     { $count ->
-        [one] One design cannot be built and is listed last: no arrangement in planes exists for links that are at least { $share } % as wide as the longest link is long.
-       *[other] { $count } designs cannot be built and are listed last: no arrangement in planes exists for links that are at least { $share } % as wide as the longest link is long.
+        [one] One design is listed last because it cannot be built: its links would have to be narrower than { $share } % of the longest link's length, or would collide in every arrangement in planes.
+       *[other] { $count } designs are listed last because they cannot be built: their links would have to be narrower than { $share } % of the longest link's length, or would collide in every arrangement in planes.
     }
 results-none-buildable = None of these designs can be built as usual: the links of the first would be at most { $width } { $unit } wide, less than { $share } % of its longest link.
 results-none-buildable-in-planes = None of these designs can be built: links or pins collide in every arrangement in planes.

@@ -44,8 +44,8 @@ MAX_REACH = 5.0
 """Maximum distance between two joints of one link in a practical design, in sizes of the task."""
 
 JAMMING_ANGLE, EXTREME_LINK_RATIO = 5.0, 100.0
-"""Transmission angle, degrees, below which friction jams a linkage, and link ratio above which it is none in practice.
-If the client gives no limits, such designs are listed last, in every order."""
+"""Transmission angle, degrees, below which friction jams a linkage, and link ratio above which it is impractical.
+Without limits of the client such designs are listed last, in every order."""
 
 CONSTRAINT_TOLERANCE = 1e-6
 """Relative tolerance for designs that a fit placed exactly at one of these limits."""
@@ -60,43 +60,44 @@ degrees, are finer than the tolerances of usual links and pins."""
 NOTABLE_ERROR_RATIO = 1.2
 """Ratio of two errors above which the summary explains why the larger one comes first."""
 
-_UNUSABLE = 3
-"""Grade of a design that is not even usable."""
+_WORST_GRADE = 3
+"""Grade of a design with an angle below the usable one, or an uneven link ratio."""
 
 
 class OrderedDesigns(NamedTuple, Generic[Design]):
     """Sorted designs and remarks on their order.
 
-    The remarks are empty if the first design is practical and the nearest, and all designs can be built.
+    The remarks are empty if the first design is practical and the most accurate, no design has extra links worth a
+    remark, and all can be built.
     """
 
     designs: list[Design]
     remark: str
 
 
-def has_even_links(design: DrivenDesign) -> bool:
+def is_sound(design: DrivenDesign) -> bool:
     """Return whether a design transmits force well and has a moderate link ratio."""
     return _transmits(design, MIN_TRANSMISSION_ANGLE) and _has_moderate_ratio(design)
 
 
-def is_usable(design: DrivenDesign) -> bool:
+def is_practical(design: DrivenDesign) -> bool:
     """Return whether a design is practical: :func:`has_even_links`, and no link is far longer than the task."""
     metrics = design.metrics
     reach = metrics.reach if isinstance(metrics, MotionMetrics) else None
-    return has_even_links(design) and (reach is None or reach <= MAX_REACH * (1.0 + CONSTRAINT_TOLERANCE))
+    return is_sound(design) and (reach is None or reach <= MAX_REACH * (1.0 + CONSTRAINT_TOLERANCE))
 
 
 def grade_design(design: DrivenDesign) -> int:
     """Return 0 for a practical design, 1 if only a link is too long, 2 for at least a usable angle, 3 for others."""
-    if has_even_links(design):
-        return 0 if is_usable(design) else 1
-    return 2 if _transmits(design, MIN_USABLE_ANGLE) and _has_moderate_ratio(design) else _UNUSABLE
+    if is_sound(design):
+        return 0 if is_practical(design) else 1
+    return 2 if _transmits(design, MIN_USABLE_ANGLE) and _has_moderate_ratio(design) else _WORST_GRADE
 
 
 def is_workable(problem: LinkageProblem, design: DrivenDesign) -> bool:
     """Return whether a measured design can be built and does not jam; limits of the client replace the usual ones."""
     given, metrics = problem.constraints, design.metrics
-    jams = given.min_transmission_angle is None and metrics.min_transmission_angle < JAMMING_ANGLE
+    jams = _is_default(given, "min_transmission_angle") and not _transmits(design, JAMMING_ANGLE)
     uneven = _is_default(given, "max_link_ratio") and metrics.link_ratio > EXTREME_LINK_RATIO * (
         1.0 + CONSTRAINT_TOLERANCE
     )
@@ -111,6 +112,8 @@ def is_judged(problem: LinkageProblem) -> bool:
 
 def sort_by_practice(problem: LinkageProblem, designs: Sequence[Design]) -> list[Design]:
     """Return designs in order of practicality, and those that fail a check last.
+
+    Designs that are not measured yet count as buildable; :func:`order_designs` sorts again.
 
     Parameters
     ----------
@@ -140,12 +143,11 @@ def order_designs(problem: LinkageProblem, designs: Sequence[Design]) -> Ordered
         return OrderedDesigns(ordered, "")
     remarks = [_describe_unbuildable(problem, passed)]
     if is_judged(problem):
-        earlier = next(design for design in designs if design.verification.passed)
         number = problem.classify_design(passed[0])
         # Classes precede accuracy, so that only designs of the first one are compared.
         compared = {n: design for n, design in enumerate(passed, 1) if problem.classify_design(design) == number}
         remarks += [
-            _describe_grade(problem, list(compared.values()), earlier),
+            _describe_grade(problem, list(compared.values())),
             _describe_error(problem, compared),
             _describe_extra_links(problem, compared),
         ]
@@ -227,46 +229,48 @@ def _describe_unbuildable(problem: LinkageProblem, passed: Sequence[DrivenDesign
     return compose("results-none-buildable", share=share, width=f"{widest:.3g}", unit=problem.length_unit)
 
 
-def _describe_grade(problem: LinkageProblem, passed: Sequence[DrivenDesign], earlier: DrivenDesign) -> str:
-    """Describe what the first design lacks, or why it precedes the one that the kind puts first."""
+def _describe_grade(problem: LinkageProblem, passed: Sequence[DrivenDesign]) -> str:
+    """Describe what the first design lacks."""
     grade = grade_design(passed[0])
-    least = _find_least_error(problem, passed)
-    near = [design for design in passed if _measure_error(problem, design) <= ERROR_BAND * least]
-    # If all designs have small errors, the remark need not mention the errors.
-    all_near = len(near) == len(passed)
-    bounds = {
-        "angle": f"{MIN_TRANSMISSION_ANGLE:.0f}",
-        "ratio": f"{MAX_LINK_RATIO:.0f}",
-        "reach": f"{MAX_REACH:.0f}",
-        "band": f"{ERROR_BAND:g}",
-    }
     if grade == 0:
-        return "" if is_usable(earlier) else compose("results-practical-first", **bounds)
-    if grade > 1:
-        message_id = "results-no-design-with-even-links" if all_near else "results-no-near-design-with-even-links"
-    elif has_even_links(earlier):
+        return ""
+    least = _find_least_error(problem, passed)
+    # If all designs have small errors, the remark need not mention the errors.
+    all_near = all(_measure_error(problem, design) <= ERROR_BAND * least for design in passed)
+    if grade == 1:
         message_id = "results-no-design-practical" if all_near else "results-no-near-design-practical"
     else:
-        message_id = "results-even-links-first" if all_near else "results-near-even-links-first"
-    return compose(message_id, **bounds)
+        message_id = "results-no-design-with-even-links" if all_near else "results-no-near-design-with-even-links"
+    return compose(
+        message_id,
+        angle=f"{MIN_TRANSMISSION_ANGLE:.0f}",
+        ratio=f"{MAX_LINK_RATIO:.0f}",
+        reach=f"{MAX_REACH:.0f}",
+        band=f"{ERROR_BAND:g}",
+    )
 
 
 def _describe_error(problem: LinkageProblem, numbered: Mapping[int, DrivenDesign]) -> str:
     """Explain why the first design is not the most accurate one; empty if they are equally accurate."""
     first = numbered[1]
-    nearest = min(numbered, key=lambda n: problem.measure_error(numbered[n]))
+    # What cannot be built is described apart.
+    compared = [n for n, design in numbered.items() if n == 1 or is_workable(problem, design)]
+    nearest = min(compared, key=lambda n: problem.measure_error(numbered[n]))
     other = numbered[nearest]
     ratio = _measure_error(problem, first) / _measure_error(problem, other)
     if ratio <= NOTABLE_ERROR_RATIO:
         return ""
+    ours, theirs = first.metrics, other.metrics
+    given: dict[str, str | int] = {"factor": f"{ratio:.2g}", "number": nearest}
+    if ours.min_transmission_angle <= theirs.min_transmission_angle and ours.link_ratio >= theirs.link_ratio:
+        return compose("results-first-less-accurate", **given)
     return compose(
         "results-first-for-soundness",
-        factor=f"{ratio:.2g}",
-        number=nearest,
-        angle=f"{first.metrics.min_transmission_angle:.1f}",
-        nearest_angle=f"{other.metrics.min_transmission_angle:.1f}",
-        ratio=f"{first.metrics.link_ratio:.3g}",
-        nearest_ratio=f"{other.metrics.link_ratio:.3g}",
+        **given,
+        angle=f"{ours.min_transmission_angle:.1f}",
+        nearest_angle=f"{theirs.min_transmission_angle:.1f}",
+        ratio=f"{ours.link_ratio:.3g}",
+        nearest_ratio=f"{theirs.link_ratio:.3g}",
     )
 
 

@@ -56,15 +56,15 @@ def limit_angle(angle: object) -> dict[str, object]:
         (JobRequest, {"problem": {"kind": "q"}}, "unknown_kind",
          f"Unknown; the permitted names are: {', '.join(KINDS)}.", f"Unbekannt; möglich sind: {', '.join(KINDS)}."),
         (JobRequest, {"problem": {}}, "unknown_kind",
-         f"Give this field; it must be one of: {', '.join(KINDS)}.",
-         f"Dieses Feld angeben; möglich sind: {', '.join(KINDS)}."),
+         f"This field is required; it must be one of: {', '.join(KINDS)}.",
+         f"Dieses Feld ist erforderlich; möglich sind: {', '.join(KINDS)}."),
         (JobRequest, {"problem": {"kind": "moton"}}, "unknown_kind",
          f"Unknown; did you mean motion, parallel_motion? The permitted names are: {', '.join(KINDS)}.",
          f"Unbekannt; ist motion, parallel_motion gemeint? Möglich sind: {', '.join(KINDS)}."),
         (JobRequest, {"problem": {"kind": "compliant_gripper"}}, "unknown_kind",
-         f"The service does not do this; {LIMITS_PAGE} lists what it leaves out. The permitted names are: "
+         f"The service does not support this; see {LIMITS_PAGE}. The permitted names are: "
          f"{', '.join(KINDS)}.",
-         f"Das leistet der Dienst nicht; {LIMITS_PAGE} nennt, was er auslässt. Möglich sind: {', '.join(KINDS)}."),
+         f"Das leistet der Dienst nicht; siehe {LIMITS_PAGE}. Möglich sind: {', '.join(KINDS)}."),
         (JobRequest, {"problem": 3}, "unknown_kind", "Expected an object.", "Erwartet wird ein Objekt."),
         (JobRequest, build_job(positions=3), "list_type",
          'Expected a list, for example [{"x": 0, "y": 0, "angle": 0}].',
@@ -79,7 +79,7 @@ def limit_angle(angle: object) -> dict[str, object]:
          'Erwartet wird ein Objekt, etwa {"motion": "dwell", "angle": 0}.'),
         (BatchRequest, {**BATCH, "problem": 3}, "dict_type", 'Expected an object, for example {"name": 0}.',
          'Erwartet wird ein Objekt, etwa {"name": 0}.'),
-        (JobRequest, {"problem": MOTION, "label": 3}, "string_type", "Expected a text.",
+        (JobRequest, {"problem": MOTION, "label": 3}, "string_type", "Expected a string.",
          "Erwartet wird ein Text."),
         (JobRequest, build_job(seed=1.5), "int_type", "Expected an integer.",
          "Erwartet wird eine ganze Zahl."),
@@ -110,11 +110,11 @@ def limit_angle(angle: object) -> dict[str, object]:
         (SkeletonSpec, {"joints": {"A": [0, 0]}, "links": [ROD, ROD], "input_link": "a"}, "too_short",
          "The object must have at least 2 members, not 1.", "Das Objekt muss mindestens 2 Einträge haben, nicht 1."),
         (BatchRequest, {**BATCH, "vary": [{"field": "", "values": [1]}]}, "string_too_short",
-         "The text must have at least 2 characters.", "Der Text muss mindestens 2 Zeichen haben."),
+         "The string must have at least 2 characters.", "Der Text muss mindestens 2 Zeichen haben."),
         (JobRequest, {"problem": MOTION, "label": "x" * 201}, "string_too_long",
-         "The text must have at most 200 characters.", "Der Text darf höchstens 200 Zeichen haben."),
+         "The string must have at most 200 characters.", "Der Text darf höchstens 200 Zeichen haben."),
         (BatchRequest, {**BATCH, "vary": [{"field": "seed", "values": [1]}]}, "string_pattern_mismatch",
-         "The text must match the pattern '^(/([^~/]|~[01])*)+$'.",
+         "The string must match the pattern '^(/([^~/]|~[01])*)+$'.",
          "Der Text muss dem Muster '^(/([^~/]|~[01])*)+$' entsprechen."),
         (BatchRequest, {**BATCH, "vary": []}, "too_short", "The list must have at least 1 item, not 0.",
          "Die Liste muss mindestens 1 Eintrag haben, nicht 0."),
@@ -131,7 +131,8 @@ def limit_angle(angle: object) -> dict[str, object]:
          "Das Feld 'motion' muss eines von diesen nennen: 'dwell', 'rise', 'fall', 'return', 'constant_velocity', "
          "'polynomial'."),
         (JobRequest, {"problem": {**get_first_example("dwell"), "output": {"type": "q"}}}, "unknown_output",
-         "Type must be one of: rocker, slider.", "Das Feld type muss eines von diesen nennen: rocker, slider."),
+         "The field `type` must be one of: rocker, slider.",
+         "Das Feld type muss eines von diesen nennen: rocker, slider."),
         (JobRequest, build_job(dynamics={}), "value_error",
          "Give speed_rpm, or speed for a sliding input; 0 means statics.",
          "Speed_rpm angeben, oder speed für einen gleitenden Antrieb; 0 bedeutet Statik."),
@@ -181,11 +182,16 @@ def test_a_misspelt_type_is_reported_once(kind, mechanisms, path, detail):
 
 def test_a_body_without_its_wrapper_says_where_to_put_it():
     refusal = refuse(MOTION)
-    assert refusal.errors == [("/problem", 'Put it into the field `problem`: {"problem": {"kind": "...", ...}}.')]
+    assert refusal.errors == [
+        ("/problem", 'The request needs the field `problem` around this object: {"problem": {"kind": "...", ...}}.')
+    ]
     with pytest.raises(Refusal) as refused:
         analyse({"type": "fourbar", "links": {}})
     assert refused.value.errors == [
-        ("/mechanism", 'Put it into the field `mechanism`: {"mechanism": {"type": "...", ...}}.')
+        (
+            "/mechanism",
+            'The request needs the field `mechanism` around this object: {"mechanism": {"type": "...", ...}}.',
+        )
     ]
 
 

@@ -6,8 +6,9 @@ itself for links and pins, and twice the distance of an axis or a hull from a ge
 can be built up to a width if planes exist for all pairs with smaller widths of their own, which bisection over the
 sorted widths finds.
 
-Distances are sampled over the motion. Between two samples a part moves by less than a hundredth of the mechanism, so
-that a width above that is reliable, and smaller ones are too small to be made.
+Distances are sampled over the motion, a degree apart over a full turn. Between two samples they may be smaller,
+typically by less than a hundredth of the mechanism's size: greater widths are reliable, and smaller ones are too small
+to be made.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ def _measure_widths(
 
 
 def _bisect_width(widths: Real, most: float, is_buildable: Callable[[Sequence[int]], bool]) -> float:
-    """Return the greatest width, at most ``most``, below which no set of colliding pairs prevents an arrangement."""
+    """Return the greatest width, at most ``most``, up to which the colliding pairs permit an arrangement."""
     # Only widths at which another pair begins to collide matter.
     steps = [0.0, *sorted({float(width) for width in widths if 0.0 < width < most}), most]
 

@@ -2,8 +2,8 @@
 
 The rows are those of :mod:`synthesis.fit.linkage.residuals`; the methods are Levenberg and Marquardt's
 (:mod:`synthesis.numerics.levenberg`) and multipliers (:mod:`synthesis.numerics.augmented_lagrangian`). Basin hopping
-perturbs the nodes of the best fits, each by a share of its shortest link, and descends again; a better end replaces its
-parent. Results do not depend on the number of threads.
+perturbs the best fits (their nodes by a share of the shortest link there, or all unknowns evenly) and descends again; a
+better end replaces its parent. Results do not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -90,13 +90,14 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FitTask:
-    """What linkages of any topology are fitted to.
+    """A fit: targets, limits and form, for linkages of any topology.
 
     Attributes
     ----------
     targets : float, shape (targets, 10)
-        Targets of the traced point (PLACE) and the output (DIRECTION, ARM), each of any node: a topology has its
-        own. See :func:`build_point_targets` and :func:`build_function_targets`.
+        Targets of the traced point (PLACE) and of the output or the heading (DIRECTION, ARM).
+        :meth:`pack_topology` fills in the nodes. See :func:`build_point_targets`, :func:`build_pose_targets` and
+        :func:`build_function_targets`.
     pack_limits : callable
         Returns the setting of a topology with the limits on its linkages.
     full_turn : bool

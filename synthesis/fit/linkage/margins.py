@@ -304,8 +304,8 @@ def write_step_gradients(
 ) -> None:  # fmt: skip
     """Write the derivatives of the margins of :func:`write_step_values`.
 
-    ``by_ends`` (2,) are the derivatives of this step's input by the ends of the range of inputs, which are the last two
-    unknowns; both are 0 for an input that turns through.
+    ``by_ends`` are the derivatives of this step's input by the unknowns after the coordinates: the ends of the range,
+    or the logarithms of ordered steps; 0 for an input that turns through.
     """
     row = np.empty(slopes.shape[2])
     if setting[TRIAD][0] >= 0.0:

@@ -539,8 +539,9 @@ def compute_linkage_rows(
 
     Parameters
     ----------
-    x : float, shape (2n,) or (2n + 2,)
-        Coordinates of the nodes, and the ends of the range of inputs if the input does not turn through.
+    x : float, shape (2n,), (2n + 2,) or (2n + slots − 1,)
+        Coordinates of the nodes; then the ends of the range of inputs (robust form without a full turn), or the
+        logarithms of the steps of ordered inputs.
     targets : float, shape (targets, 10)
         See the module's docstring.
     setting : float
@@ -583,7 +584,7 @@ def compute_linkage_rows(
     if m < 0:
         return -1
     if not full and not robust:
-        # The range follows the targets; its ends are constants of the descent.
+        # The range follows the targets. Its ends are constants of the descent, except for ordered inputs.
         begin, high = min(0.0, state[:slots].min()), max(0.0, state[:slots].max())
         per = (high - begin) / max(steps - 1, 1)
     values, gradients = state[slots:], np.empty((limits, unknowns))

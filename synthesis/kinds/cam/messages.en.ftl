@@ -92,7 +92,7 @@ cam-follows-program =
        *[cylinder] cylinder radius
     } of { $radius } { $unit } follows the program.
 # $limit is a field of `limits`.
-cam-size-set-by-default = The radius is set by { $limit } { $value }, a default.
+cam-size-set-by-default = The default `{ $limit }` = { $value } determines the radius; give your own value to change it.
 # $checks are names of checks.
 cam-fails-checks =
     The smallest cam found, with a { $circle ->

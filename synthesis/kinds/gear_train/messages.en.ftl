@@ -99,7 +99,7 @@ gear_train-verified = verified
 
 # Summary: the best train. $meshes: its pairs of tooth numbers, such as 20:43, 17:58.
 
-gear_train-first-is-undercut = Unshifted gears of { $teeth } teeth are undercut by the rack that cuts them.
+gear_train-first-is-undercut = In the first train, the rack that cuts the gears undercuts those with { $teeth } teeth, which have no profile shift.
 gear_train-best-exact = { $meshes } has exactly the requested ratio.
 gear_train-best-exact-of-ties =
     { $ties ->

@@ -420,4 +420,4 @@ motion-progress-driving-best-pairs = die besten Paare werden durchgefahren
 
 # Detail of a check
 
-motion-exact-positions-only = Betrifft { $exact } von { $count } Positionen; die übrigen sind ausgeglichen und werden um bis zu { $distance } und { $angle }° verfehlt.
+motion-exact-positions-only = Diese Prüfung betrifft { $exact } von { $count } Positionen. Die übrigen sind ausgeglichen: Sie werden um höchstens { $distance } und { $angle }° verfehlt.

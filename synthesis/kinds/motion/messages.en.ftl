@@ -398,4 +398,4 @@ motion-progress-driving-best-pairs = driving the best pairs
 
 # Detail of a check
 
-motion-exact-positions-only = Covers { $exact } of { $count } positions; the others are fitted, and missed by up to { $distance } and { $angle }°.
+motion-exact-positions-only = This check covers { $exact } of { $count } positions. The others are fitted: they are missed by at most { $distance } and { $angle }°.

@@ -59,7 +59,7 @@ quick_return-designs-found =
 quick_return-no-design-exists = No design exists.
 quick_return-no-design-found = No design was found.
 quick_return-transmission-bound =
-    A rocker with a swing of { $swing }° has a transmission angle below { $bound }°, 90° minus half the swing.
+    If a rocker swings by { $swing }°, the minimum transmission angle is below { $bound }° (90° minus half the swing).
 quick_return-type-without-range =
     The { $type } cannot reach a time ratio of { $ratio }: its range with this output is none ({ $reason }).
 quick_return-ratio-out-of-range =

@@ -37,7 +37,7 @@ def analyse(mechanism, **more):
 def test_a_ratio_at_a_dead_centre_is_null_with_a_reason(mechanism, at, field, name):
     answer = analyse(mechanism, motion={"at": at})
     assert np.isnan(answer[field][name]).all()
-    assert answer["notes"] == [f"{field}: null where the output is at rest, a dead centre, of {name}"]
+    assert answer["notes"] == [f"{field}: null for {name} where the output is at rest (a dead centre)"]
     beside = analyse(mechanism, motion={"at": at + 1e-3})
     assert np.isfinite(beside[field][name]).all()
     assert beside["notes"] == []

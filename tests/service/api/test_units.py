@@ -25,7 +25,7 @@ PURE = {
     "CurvePlacement": {"size"},  # times the stated curve
     "CylinderPressure": {"table"},  # columns of two units
     "DesignForces": {"joint_force_index"},
-    "DwellMetrics": {"link_ratio", "reach", "quality"},
+    "DwellMetrics": {"link_ratio", "relative_link_width", "reach", "quality"},
     "PlacedDwell": {"at"},
     "DwellRequest": {"at"},
     "EngineCylinder": {"place"},  # in spacings of the throws
@@ -54,7 +54,7 @@ PURE = {
     "ForceLevel": {"weight", "cap", "ratio"},
     "ForceWeights": {"shaking_force", "shaking_moment", "drive", "joint_forces"},
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
-    "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
+    "FunctionMetrics": {"link_ratio", "relative_link_width", "reach", "rms_residual", "quality", *CARRIED},
     "FunctionProblem": {"scale_limits"},  # of input and output alike
     "FunctionStatement": {"x", "exponent", "base"},
     "FunctionTarget": {"input", "output", "residual"},
@@ -114,19 +114,27 @@ PURE = {
     "InputDial": {"at"},
     "LayshaftMetrics": {"max_error", "errors", "contact_ratios"},
     "LayshaftProblem": {"ratios", "reverse", "tolerance"},
-    "LinkageMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
+    "LinkageMetrics": {"link_ratio", "relative_link_width", "reach", "rms_residual", "quality", *CARRIED},
     "MeshContact": {"contact_ratio"},
     "MeshGeometry": {"contact_ratio", "efficiency", "overlap_ratio", "total_contact_ratio"},
     "Optimality": {"value", "bound", "gap"},  # of its criterion
     "GearNumbers": {"driver", "driven"},
     "OutputDial": {"at"},
-    "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
+    "ParallelMotionMetrics": {"link_ratio", "relative_link_width", "reach", "rms_residual", "quality", *CARRIED},
     "ParetoLayshaft": {"max_error"},
     "ParetoPlanetaryTrain": {"error"},
     "ParetoSeries": {"error"},
     "ParetoTrain": {"relative_error"},
     "PathConstraints": {"max_link_ratio", "max_joint_force_index"},
-    "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", "stance_speed_deviation", *CARRIED},
+    "PathMetrics": {
+        "link_ratio",
+        "relative_link_width",
+        "reach",
+        "rms_residual",
+        "quality",
+        "stance_speed_deviation",
+        *CARRIED,
+    },
     "PathProblem": {"gear_ratio"},
     "PinFriction": {"mu"},
     "PlanetaryMechanism": {"addendum"},  # in modules
@@ -135,7 +143,7 @@ PURE = {
     "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
     "Pulse": {"area"},  # an energy
     "Quality": {"yield"},
-    "QuickReturnMetrics": {"time_ratio", "link_ratio", "reach", "quality"},
+    "QuickReturnMetrics": {"time_ratio", "link_ratio", "relative_link_width", "reach", "quality"},
     "QuickReturnProblem": {"time_ratio"},
     "Ratcheting": {"friction"},
     "Ratio": {"value"},
@@ -157,8 +165,8 @@ PURE = {
     "SpringSpec": {"damping"},  # by the sort of spring
     "RequestedStage": {"diameter_quotient", "friction"},
     "TorqueTable": {"table"},  # columns of two units
-    "SteeringMetrics": {"link_ratio"},
-    "StraightLineMetrics": {"link_ratio", "reach", "quality"},
+    "SteeringMetrics": {"link_ratio", "relative_link_width"},
+    "StraightLineMetrics": {"link_ratio", "relative_link_width", "reach", "quality"},
     "StructureVerdict": {"max_error"},
     "TrainSeriesMetrics": {"error", "speeds", "efficiency"},  # over the input's
     "TrainSeriesProblem": {"ratio", "tolerance"},

@@ -343,7 +343,7 @@ ZONE = {"fixed_pivots": {"input": {"circle": {"center": [0.0, 0.0], "radius": 9.
     ("more", "paths"),
     [
         ({"mechanisms": []}, {"/mechanisms"}),
-        ({"mechanisms": ["watt_1"]}, {"/mechanisms", "/mechanisms/0"}),
+        ({"mechanisms": ["watt_1"]}, {"/mechanisms/0"}),
         ({"mechanisms": "sixbar"}, {"/mechanisms"}),
         ({"mechanisms": ["slider_crank"]}, {"/mechanisms"}),
         ({"mechanisms": ["watt_2"], "mechanism": "slider_crank", "output_range": 50.0}, {"/mechanisms"}),

@@ -387,7 +387,7 @@ TIMED = [{"x": x, "y": x * x, "crank_angle": 30.0 * x} for x in (0.0, 1.0, 2.0)]
     ("mechanisms", "paths"),
     [
         ([], {"/problem/mechanisms"}),
-        (["watt_2"], {"/problem/mechanisms", "/problem/mechanisms/0"}),
+        (["watt_2"], {"/problem/mechanisms/0"}),
         ("best", {"/problem/mechanisms"}),
     ],
 )

@@ -338,6 +338,7 @@ STEERING_ROWS: dict[str, Any] = {
     "wheelbase": 2800.0,
     "pivot_distance": 1200.0,
     "track": 1475.0,
+    "wheel_width": Row(200.0, {"mechanism": "ackermann", "track": 1475.0}),
     "lock": 35.0,
     "mechanism": "ackermann",
     "tie_rod": "ahead",

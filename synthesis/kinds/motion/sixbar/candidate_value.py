@@ -31,7 +31,7 @@ from synthesis.kinds.motion.sixbar.dyad_assembly import (
 )
 from synthesis.kinds.motion.sixbar.relative_dyads import JIT_OPTIONS
 from synthesis.numerics.array_layout import ArrayLayout
-from synthesis.verification.body_motion import compute_ease
+from synthesis.verification.body_motion import SMALL_BODY_TURN, compute_ease
 from synthesis.verification.measures import compute_quality
 
 LIMITS = ArrayLayout(
@@ -83,10 +83,6 @@ STEP_COUNT = 60
 
 MIN_LINK_LENGTH = 0.02
 """Minimum length of a usable link, in task sizes."""
-
-MIN_BODY_TURN = math.radians(15.0)
-"""Minimum body rotation, radians, in the denominator of the excess rotation, as in
-:mod:`synthesis.verification.body_motion`."""
 
 
 @njit(**JIT_OPTIONS)
@@ -353,5 +349,5 @@ def evaluate_candidate(
     # The cap at 0.999 keeps infeasible candidates below 1, where feasible ones begin.
     if not (flattest >= limits[MIN_SINE] and over <= 1.0):
         return float(min(flattest, 0.999) / over)
-    excess = max((travelled - needed[0]) / max(needed[0], 1.0), (turned - needed[1]) / max(needed[1], MIN_BODY_TURN))
+    excess = max((travelled - needed[0]) / max(needed[0], 1.0), (turned - needed[1]) / max(needed[1], SMALL_BODY_TURN))
     return 1.0 + compute_ease(abs(last), max(excess, 0.0)) * compute_quality(flattest, reach, ratio)

@@ -109,7 +109,7 @@ def solve_by_chains(problem: MotionProblem, types: tuple[Sixbar, ...], progress:
     """Solve for sixbars of the given types that contain the problem's chain."""
     search = ChainSolver(problem, types)
     found = search.run(scale_progress(progress, 0.0, 0.9))
-    sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
+    log = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
     progress(0.9, compose("motion-verifying-best-sixbars", count=search.chains.weighed))
     # Feasible ones come first. The others may violate only default limits, so the verification decides about them.
     rows = np.flatnonzero(found.values >= 0.0)
@@ -117,14 +117,14 @@ def solve_by_chains(problem: MotionProblem, types: tuple[Sixbar, ...], progress:
     def verify_sixbar(n: int) -> LinkageDesign | None:
         return verify(problem, search.build_mechanism(found, n), search.target)
 
-    tried = sifting.verify_candidates(rows.tolist(), verify_sixbar, enough=problem.max_designs)
+    tried = log.verify_candidates(rows.tolist(), verify_sixbar, enough=problem.max_designs)
     # All others were examined, but not verified.
-    sifting.reject("unsound", search.chains.weighed - tried)
+    log.reject("unsound", search.chains.weighed - tried)
     progress(1.0, compose("motion-verified"))
     return MotionResult(
-        designs=sifting.select_designs(make_ranking(problem)),
-        search=sifting.build_search("constrained_chains"),
-        summary=describe_sixbars(problem, sifting, compose("motion-sixbars-from-chains", count=search.chains.weighed)),
+        designs=log.select_designs(make_ranking(problem)),
+        search=log.build_search("constrained_chains"),
+        summary=describe_sixbars(problem, log, compose("motion-sixbars-from-chains", count=search.chains.weighed)),
     )
 
 

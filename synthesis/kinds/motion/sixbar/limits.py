@@ -33,17 +33,21 @@ MAX_ANGLE = 89.9
 ANGLE_STEP, MAX_TIGHTENED_ANGLE, SIZE_FACTOR = 5.7, 80.0, 0.85
 """Tighter aims: increase of the transmission angle and its maximum, degrees; factor of reach and link ratio."""
 
-CLASS_LINKS = {"any": -1, "double_crank": 0, "crank_rocker": 1, "double_rocker": 2, "non_grashof": -1}
-"""Shortest link of the fourbar by its class, in the order ground, input, coupler, output; −1 for any."""
-
-GRASHOF_CONDITIONS = {"any": 0.0, "non_grashof": -1.0}
-"""Whether the fourbar must violate the Grashof condition (−1) or need not satisfy it (0); the other classes must."""
+GRASHOF_LIMITS = {
+    "any": (-1, 0.0),
+    "double_crank": (0, 1.0),
+    "crank_rocker": (1, 1.0),
+    "double_rocker": (2, 1.0),
+    "non_grashof": (-1, -1.0),
+}
+"""Shortest link of the fourbar by its class, in the order ground, input, coupler, output, −1 for any; and whether the
+Grashof condition must be satisfied (1), violated (−1) or neither (0)."""
 
 
 class Aims(NamedTuple):
-    """What a fit aims at beyond the client's limits: a transmission angle, degrees, and greatest sizes.
+    """Transmission angle, degrees, and maximum sizes that a fit aims at.
 
-    ``reach`` is in task sizes. ``share`` is the part of the limits of lengths that is used.
+    ``reach`` is in task sizes. ``share`` is the fraction of each length limit that the search uses.
     """
 
     angle: float
@@ -53,14 +57,14 @@ class Aims(NamedTuple):
 
     def tighten(self) -> Aims:
         """Return aims at a larger angle and smaller sizes."""
-        angle = min(self.angle + ANGLE_STEP, MAX_TIGHTENED_ANGLE)
+        angle = max(self.angle, min(self.angle + ANGLE_STEP, MAX_TIGHTENED_ANGLE))
         return self._replace(angle=angle, reach=SIZE_FACTOR * self.reach, ratio=SIZE_FACTOR * self.ratio)
 
 
 class Limits(NamedTuple):
-    """Limits of a problem, and margins from them in the aims of the search.
+    """Limits of a problem, as aims with a margin.
 
-    Those of the search leave room for the motion between the samples; the bare ones hardly any.
+    The margins of the search leave room for the motion between its steps; those of :attr:`bare_aims` only for rounding.
     """
 
     problem: MotionProblem
@@ -78,7 +82,7 @@ class Limits(NamedTuple):
 
     @property
     def relaxed_aims(self) -> Aims:
-        """The limits with the client's own ones only, and wide defaults for the others."""
+        """The client's own limits, and wide defaults for the others."""
         constraints, aims = self.problem.constraints, self.aims
         if constraints.min_transmission_angle is None:
             aims = aims._replace(angle=RELAXED_ANGLE)
@@ -88,10 +92,10 @@ class Limits(NamedTuple):
 
     def _move_aims(self, angle: float, share: float) -> Aims:
         constraints = self.problem.constraints
-        least = constraints.min_transmission_angle
+        min_angle = constraints.min_transmission_angle
         ratio = MAX_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio
-        least = SOUND_TRANSMISSION_ANGLE if least is None else least
-        return Aims(min(least + angle, MAX_ANGLE), share * MAX_REACH, share * ratio, share)
+        min_angle = SOUND_TRANSMISSION_ANGLE if min_angle is None else min_angle
+        return Aims(min(min_angle + angle, MAX_ANGLE), share * MAX_REACH, share * ratio, share)
 
     def build_packer(self, aims: Aims) -> Callable[[Topology], Real]:
         """Return a function that packs the limits with some aims for a topology."""
@@ -107,13 +111,14 @@ class Limits(NamedTuple):
         constraints, lengths = problem.constraints, problem.constraints.link_length
         out = pack_topology(topology)
         if topology.families:
-            out[fields.FAMILY] = CLASS_LINKS[constraints.grashof]
-            out[fields.GRASHOF] = GRASHOF_CONDITIONS.get(constraints.grashof, 1.0)
+            out[fields.FAMILY], out[fields.GRASHOF] = GRASHOF_LIMITS[constraints.grashof]
         out[fields.COSINE], out[fields.RATIO] = math.cos(math.radians(aims.angle)), aims.ratio
         shortest = 0.0 if lengths is None else lengths.min / task.size / aims.share
         longest = math.inf if lengths is None or lengths.max is None else aims.share * lengths.max / task.size
-        out[fields.LINKS] = max(shortest, MIN_LINK_LENGTH / aims.share), min(longest, aims.reach)
-        out[fields.REACH] = aims.reach
+        shortest = max(shortest, MIN_LINK_LENGTH / aims.share)
+        # The reach is a default, which gives way to a required length.
+        reach = max(aims.reach, shortest)
+        out[fields.LINKS], out[fields.REACH] = (shortest, min(longest, reach)), reach
         fixed = self._scale_region(constraints.fixed_pivot_region)
         out[fields.INPUT_BOX] = out[fields.PIVOT_BOX] = fixed
         out[fields.MOVING_BOX] = self._scale_region(constraints.moving_pivot_region)

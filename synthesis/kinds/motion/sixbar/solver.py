@@ -57,7 +57,7 @@ from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.answer import EightbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.results.candidate_log import DEFECT_REASONS, CandidateLog
 from synthesis.results.ranking import select_distinct
-from synthesis.verification.body_motion import compute_ease
+from synthesis.verification.body_motion import SMALL_BODY_TURN, compute_ease
 from synthesis.verification.measures import compute_quality
 
 STARTS_PER_ROUND, FIRST_STEPS = 240, 60
@@ -96,8 +96,9 @@ MET_COST = 1e-22
 """Half the sum of squares below which a linkage meets all positions and constraints, up to rounding."""
 
 MAX_ROUNDS, EXTENSION_FACTOR, MIN_ROUNDS = 24, 2, 3
-"""Maximum number of rounds; bound of the rounds once a linkage meets the positions, relative to those until then, since
-one shows how hard the problem is; and minimum number, so that not all come from one lucky start."""
+"""Maximum number of rounds. After the first success in round n, at most EXTENSION_FACTOR · n + MIN_ROUNDS rounds are
+run, because n shows how hard the problem is. At least MIN_ROUNDS are run, so that not all designs come from one lucky
+start."""
 
 RELAXATION_START, RELAXATION_PERIOD = 0.5, 3
 """Share of the rounds after which, without a linkage that meets the positions, every third drops the default limits."""
@@ -110,26 +111,21 @@ IMPROVEMENT_COUNT, IMPROVEMENT_HOP, IMPROVEMENT_DECAY = 14, 0.12, 0.8
 """Improvement of linkages that meet the positions: number of hops, size of the first, and its factor after a failure.
 """
 
-FIT_ROUNDS, STALE_GENERATIONS, MIN_COST_RATIO = 14, 32, 0.97
-"""Fits: maximum number of rounds; a pool has converged if this many generations do not lower its least cost below this
-share."""
+FIT_ROUNDS, STALE_ROUNDS, MIN_COST_RATIO = 14, 2, 0.97
+"""Fits: maximum number of rounds; a pool has converged if this many do not lower its least cost below this share."""
 
-TARGET_ERROR, PROMISING_ERROR, EXTENSION = 1e-6, 1e-4, 2
+TARGET_ERROR, PROMISING_ERROR, FIT_EXTENSION_FACTOR = 1e-6, 1e-4, 2
 """Errors of fits, in task sizes and radians: the search ends when the requested number of fits is below the first, and
 is extended by the factor when one fit is below the second, because an exact solution may exist."""
 
 EXACT_ROOT = 3.0
-"""Root of the additional weight of an exact position in a fit."""
+"""Factor of the root of an exact position's weight in a fit, nine in the weight itself."""
 
 PROJECTION_STEPS, PROJECTION_TOLERANCE = 60, 1e-14
 """Number of steps that move a fit onto its exact positions, and their tolerance."""
 
 TOLERANCE_SHARE = 0.98
 """Share of a tolerance that is used; the rest covers rounding and the steps of the drive."""
-
-MIN_BODY_TURN = math.radians(15.0)
-"""Minimum body rotation, radians, in the denominator of the excess rotation, as in
-:mod:`synthesis.verification.body_motion`."""
 
 MIN_SEPARATION = 0.1
 """Minimum separation of distinct sixbars: the largest distance between corresponding joints, in task sizes."""
@@ -159,7 +155,9 @@ class SixbarSearch:
         self.needed = compute_needed_motion(self.task)
         constraints = problem.constraints
         # Constraints that the fits do not know reject many linkages: keep more of them.
-        self.is_judged = bool(problem.space is not None or problem.layout is not None or constraints.force_limits)
+        self.has_unfitted_constraints = bool(
+            problem.space is not None or problem.layout is not None or constraints.force_limits
+        )
         self.descents = 0
 
     def build_task(self, aims: Aims, steps: int = SEARCH_STEP_COUNT) -> FitTask:
@@ -183,7 +181,7 @@ class SixbarSearch:
         aims = self.limits.aims, self.limits.relaxed_aims
         tasks, pools = tuple(map(self.build_task, aims)), [list[Fit](), list[Fit]()]
         found: list[Candidate] = []
-        enough = MIN_MET_CONSTRAINED if self.is_judged else MIN_MET
+        enough = MIN_MET_CONSTRAINED if self.has_unfitted_constraints else MIN_MET
         enough = max(enough, MET_PER_DESIGN * self.problem.max_designs)
         rounds, number = MAX_ROUNDS, 0
         while number < rounds and (number < MIN_ROUNDS or len(found) < enough):
@@ -202,6 +200,7 @@ class SixbarSearch:
         starts = self._draw_starts(task, rng)
         fits = descend_softly(starts, task, FIRST_STEPS, COARSE_TOLERANCE, SOFT_WEIGHT)
         met, pool = _take_met([*pool, *fits])
+        pool = self._drop_near(pool, met)
         for _ in range(GENERATION_COUNT):
             pool = hop_basins(
                 pool[:POOL_SIZE], task, HOPS, HOP_STEPS, rng, HALVINGS, SOFT_WEIGHT, tolerance=COARSE_TOLERANCE,
@@ -209,18 +208,18 @@ class SixbarSearch:
             )  # fmt: skip
             self.descents += HOPS
             more, pool = _take_met(pool)
-            # Others near one that meets the positions would lead to the same one.
-            pool = [fit for fit in pool if not any(self._is_near(fit, other) for other in more)]
+            pool = self._drop_near(pool, more)
             met += more
         return met, pool
 
-    def _is_near(self, fit: Fit, other: Fit) -> bool:
-        """Return whether two linkages are the same but for small changes."""
-        if fit.topology is not other.topology:
-            return False
-        return bool(
-            np.abs(fit.x[: 2 * len(fit.topology.nodes)] - other.x[: 2 * len(fit.topology.nodes)]).max() < MIN_SEPARATION
-        )
+    def _drop_near(self, pool: Sequence[Fit], met: Sequence[Fit]) -> list[Fit]:
+        """Return the fits of a pool that are not near one that meets the positions: they would lead to the same one."""
+        places = [np.array(self._list_joints(fit)) for fit in met]
+        return [
+            fit
+            for fit in pool
+            if not any(np.abs(place - self._list_joints(fit)).max() < MIN_SEPARATION for place in places)
+        ]
 
     def _draw_starts(self, task: FitTask, rng: np.random.Generator) -> list[Fit]:
         weights = [weight for kind in dict.fromkeys(self.kinds.values()) for weight in SAMPLING_WEIGHTS[kind]]
@@ -253,12 +252,12 @@ class SixbarSearch:
         places, cosines = np.empty((len(steps), len(nodes), 2)), np.zeros((len(steps), len(nodes)))
         trace_linkage(nodes, fit.x, steps, places, cosines)
         z = places[..., 0] + 1j * places[..., 1]
-        flattest = np.abs(cosines).max()
-        # A toggle between the steps of the search.
-        if not flattest < 1.0:
+        max_cosine = np.abs(cosines).max()
+        # The linkage passes a toggle between the steps of the search.
+        if not max_cosine < 1.0:
             return one._replace(value=-1.0)
         if topology.triad:
-            flattest = max(abs(find_min_slant(*row[list(topology.triad)])[0]) for row in z)
+            max_cosine = max(abs(find_min_slant(*row[list(topology.triad)])[0]) for row in z)
         point = z[:, topology.point]
         heading = np.unwrap(np.angle(z[:, topology.heading] - point))
         first, second = topology.get_direction("input")
@@ -266,11 +265,11 @@ class SixbarSearch:
         # Denominators have a floor, so that short motions do not exaggerate the excess.
         excess = max(
             (np.abs(np.diff(point)).sum() - self.needed[0]) / max(self.needed[0], 1.0),
-            (np.abs(np.diff(heading)).sum() - self.needed[1]) / max(self.needed[1], MIN_BODY_TURN),
+            (np.abs(np.diff(heading)).sum() - self.needed[1]) / max(self.needed[1], SMALL_BODY_TURN),
             0.0,
         )
         pins, arms = (np.abs(np.diff(z[0][pairs], axis=1)) for pairs in (topology.pairs, topology.arms))
-        sine = math.sqrt(max(1.0 - float(flattest) ** 2, 0.0))
+        sine = math.sqrt(max(1.0 - float(max_cosine) ** 2, 0.0))
         quality = compute_quality(sine, float(max(pins.max(), arms.max())), float(pins.max() / pins.min()))
         return one._replace(value=quality * float(compute_ease(abs(turned[-1] - turned[0]), float(excess))))
 
@@ -300,25 +299,25 @@ class SixbarSearch:
     def fit(self, progress: Progress) -> list[Fit]:
         """Return linkages that miss the positions least, the nearest first."""
         rng = np.random.default_rng(self.problem.seed)
-        tasks = tuple(map(self.build_task, (self.limits.aims, self.limits.relaxed_aims)))
+        task = self.build_task(self.limits.aims)
         found: list[Fit] = []
         pool: list[Fit] = []
         stale, least, most, share = 0, math.inf, FIT_ROUNDS, 0.0
         number = 0
         while number < most:
-            task = tasks[0]
             met, pool = self._run_round(task, pool, rng)
             number += 1
             found += met
-            if sum(fit.cost <= 0.5 * TARGET_ERROR**2 for fit in [*found, *pool]) >= self.problem.max_designs:
+            good = [fit for fit in [*found, *pool] if fit.cost <= 0.5 * TARGET_ERROR**2]
+            if len(self._select_fits(good, self.problem.max_designs)) == self.problem.max_designs:
                 break
             stale = 0 if pool and pool[0].cost < MIN_COST_RATIO * least else stale + 1
             least = min(least, pool[0].cost) if pool else least
-            if stale * GENERATION_COUNT >= STALE_GENERATIONS:
+            if stale >= STALE_ROUNDS:
                 found += self.converge_fits(pool)
                 pool, stale, least = [], 0, math.inf
                 if any(fit.cost <= 0.5 * PROMISING_ERROR**2 for fit in found):
-                    most = EXTENSION * FIT_ROUNDS
+                    most = FIT_EXTENSION_FACTOR * FIT_ROUNDS
             # The budget may be extended, but reported progress must not decrease.
             share = max(share, number / most)
             progress(share, compose("motion-sixbars-examined", count=self.descents))
@@ -346,6 +345,7 @@ class SixbarSearch:
         parts = [fit._replace(inputs=fit.inputs[chosen]) for fit in fits]
         ends = descend_softly(parts, exact_task, PROJECTION_STEPS, PROJECTION_TOLERANCE)
         moved = [
+            # The cost is that at the old inputs; the verification settles them.
             settle_inputs(fit._replace(x=end.x), task)
             for fit, end in zip(fits, ends, strict=True)
             if end.cost < MET_COST
@@ -365,10 +365,15 @@ class SixbarSearch:
     def list_mechanisms(self, fits: Sequence[Fit]) -> list[SixbarMechanism | EightbarMechanism]:
         """Return the linkages of distinct fits, in the problem's coordinates, as many as are worth driving."""
         most = max(ATTEMPTS_PER_DESIGN * self.problem.max_designs, MIN_ATTEMPTS)
-        most = max(most, CONSTRAINED_ATTEMPTS) if self.is_judged else most
-        chosen = select_distinct([self._list_joints(fit) for fit in fits], most, MIN_SEPARATION) if fits else []
-        made = [self.build_mechanism(fits[k]) for k in chosen]
-        return [mechanism for mechanism in made if mechanism is not None]
+        most = max(most, CONSTRAINED_ATTEMPTS) if self.has_unfitted_constraints else most
+        mechanisms = [self.build_mechanism(fit) for fit in self._select_fits(fits, most)]
+        return [mechanism for mechanism in mechanisms if mechanism is not None]
+
+    def _select_fits(self, fits: Sequence[Fit], count: int) -> list[Fit]:
+        """Return distinct fits in their order, at most ``count``."""
+        if not fits:
+            return []
+        return [fits[k] for k in select_distinct([self._list_joints(fit) for fit in fits], count, MIN_SEPARATION)]
 
 
 def normalize_heading(fit: Fit) -> Fit:
@@ -395,21 +400,21 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
     if problem.chain is not None:
         return solve_by_chains(problem, types, progress)
     search = SixbarSearch(problem, types)
-    looked = scale_progress(progress, 0.0, 0.9)
-    fits = search.fit(looked) if problem.is_least_squares else search.run(looked)
-    sifting = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
+    search_progress = scale_progress(progress, 0.0, 0.9)
+    fits = search.fit(search_progress) if problem.is_least_squares else search.run(search_progress)
+    log = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
     progress(0.9, compose("motion-verifying-best-sixbars", count=search.descents))
     mechanisms = search.list_mechanisms(fits)
 
     def verify_sixbar(mechanism: SixbarMechanism | EightbarMechanism) -> LinkageDesign | None:
         return verify(problem, mechanism, search.target)
 
-    tried = sifting.verify_candidates(mechanisms, verify_sixbar, enough=problem.max_designs)
+    tried = log.verify_candidates(mechanisms, verify_sixbar, enough=problem.max_designs)
     # All others were examined, but not verified.
-    sifting.reject("unsound", max(search.descents - tried, 0))
+    log.reject("unsound", max(search.descents - tried, 0))
     progress(1.0, compose("motion-verified"))
     return MotionResult(
-        designs=sifting.select_designs(make_ranking(problem)),
-        search=sifting.build_search("sixbar_descents"),
-        summary=describe_sixbars(problem, sifting, compose("motion-sixbars-fitted", count=search.descents)),
+        designs=log.select_designs(make_ranking(problem)),
+        search=log.build_search("sixbar_descents"),
+        summary=describe_sixbars(problem, log, compose("motion-sixbars-fitted", count=search.descents)),
     )

@@ -9,19 +9,19 @@ from synthesis.model.linkage.answer import LinkageDesign
 from synthesis.results.candidate_log import CandidateLog
 
 
-def describe_sixbars(problem: MotionProblem, sifting: CandidateLog[LinkageDesign], effort: str) -> str:
+def describe_sixbars(problem: MotionProblem, log: CandidateLog[LinkageDesign], effort: str) -> str:
     """Describe a search: its effort, the beginning of a sentence, and the best of the designs that passed."""
-    if not sifting.passed:
+    if not log.passed:
         return join_messages(
             [
                 compose("motion-no-sixbar-feasible", effort=effort),
-                sifting.describe_reasons().strip(),
+                log.describe_reasons().strip(),
                 compose("motion-unproven"),
             ]
         )
-    found = [compose("motion-sixbars-verified", effort=effort, designs=len(sifting.passed))]
+    found = [compose("motion-sixbars-verified", effort=effort, designs=len(log.passed))]
     if problem.is_least_squares:
-        share = 100.0 * min(map(get_rms_error, sifting.passed))
+        share = 100.0 * min(map(get_rms_error, log.passed))
         found.append(compose("motion-best-error", error=f"{share:.3g}"))
-    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
+    best = max(design.metrics.min_transmission_angle for design in log.passed)
     return join_messages([*found, compose("motion-best-transmission-angle", angle=f"{best:.1f}")])

@@ -180,15 +180,15 @@ def _check_motion(problem: MotionProblem, target: TargetPoses, driven: DrivenLin
 
 
 def _describe_fitted_positions(problem: MotionProblem, target: TargetPoses, driven: DrivenLinkage) -> str | None:
-    """Return a sentence on the positions that may be missed; None if all are exact."""
-    exact = np.asarray(target.exact_mask.all(axis=-1))
-    if exact.all():
+    """Describe how far the fitted positions are missed; None if none is fitted."""
+    fitted = np.asarray(~np.isfinite(target.limits).all(axis=-1))
+    if not fitted.any():
         return None
-    offsets = driven.offsets[~exact]
+    offsets = driven.offsets[fitted]
     distance = write_quantity(f"{np.hypot(offsets[:, 0], offsets[:, 1]).max():.3g}", problem.length_unit)
     angle = f"{math.degrees(np.abs(offsets[:, 2]).max()):.3g}"
     return compose(
-        "motion-exact-positions-only", exact=int(exact.sum()), count=len(exact), distance=distance, angle=angle
+        "motion-exact-positions-only", exact=int((~fitted).sum()), count=len(fitted), distance=distance, angle=angle
     )
 
 

@@ -119,7 +119,8 @@ def assert_sound_by_continuation(design: LinkageDesign) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_planted_linkages_are_recovered_without_noise(seed: int) -> None:
     planted = plant_many(np.random.default_rng(seed), 20)
-    best = solved(motion(planted.positions)).designs[0]
+    # Others that are off by less than usual tolerances may stand before it.
+    best = min(solved(motion(planted.positions)).designs, key=lambda design: design.metrics.rms_residual)
     assert best.verification.passed
     assert best.metrics.rms_residual < 1e-9
     joints = {name: complex(*z) for name, z in best.mechanism.skeleton.joints.items()}
@@ -138,7 +139,7 @@ def assert_not_above_the_plant(seed: int, noise: float, n: int) -> None:
     result = solved(problem)
     if not allowed.verification.passed:
         return
-    best = result.designs[0]
+    best = min(result.designs, key=lambda design: design.metrics.rms_residual)
     assert best.metrics.rms_residual <= allowed.metrics.rms_residual * (1.0 + 1e-9)
     assert best.metrics.rms_residual == pytest.approx(driven_error(best, problem), rel=1e-4, abs=1e-5)
     assert_sound_by_continuation(best)
@@ -174,7 +175,9 @@ def test_held_positions_stay_held_while_others_are_fitted() -> None:
     assert check.passed
     assert max(best.targets[k].residual for k in (0, 5, 11)) < 1e-9
     worst = max(target.point_residual for target in best.targets)
-    assert check.detail.startswith(f"Covers 3 of 12 positions; the others are fitted, and missed by up to {worst:.3g} ")
+    assert check.detail.startswith(
+        f"This check covers 3 of 12 positions. The others are fitted: they are missed by at most {worst:.3g} "
+    )
     assert 1e-5 < best.metrics.rms_residual <= the_plant(planted, problem).metrics.rms_residual
     assert_sound_by_continuation(best)
 
