@@ -19,7 +19,7 @@ from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.problem import ContradictionError
 from synthesis.registry import parse_problem
 from synthesis.results.buildability import is_buildable
-from synthesis.results.practicality import grade_design
+from synthesis.results.practicality import ERROR_BAND, NEGLIGIBLE_ERROR, grade_design
 from synthesis.verification.reconstruction import rebuild_mechanism
 from tests.campaign import further
 from tests.cases import Case, cases
@@ -80,9 +80,11 @@ def test_dwells_are_what_was_measured(fields) -> None:
     for design in result.designs[:3]:
         assert_measured(problem, design)
         assert len(design.targets) == problem.count
-    # What can be built and used as it is stands first.
+    # Of the designs near the task, one that can be built and used as it is stands first.
+    errors = [max(problem.measure_error(design), NEGLIGIBLE_ERROR) for design in result.designs]
     grades = [(not is_buildable(design), grade_design(design)) for design in result.designs]
-    assert grades == sorted(grades)
+    near = [grade for grade, error in zip(grades, errors, strict=True) if error <= ERROR_BAND * min(errors)]
+    assert grades[0] == min(near) or not any(map(is_buildable, result.designs))
 
 
 @pytest.mark.slow
