@@ -286,7 +286,10 @@ def _explain_literals(faults: Sequence[Fault], models: Models) -> str:
     if len(literal) < len(faults):
         part, *steps = faults[-1]["loc"]
         example = write_example(models.get(part), steps) or "[...]"
-        return compose("service-input-or-list", names=", ".join((*others, last)), example=example)
+        given = {"names": ", ".join((*others, last)), "example": example}
+        if near is None:
+            return compose("service-input-or-list", **given)
+        return compose("service-input-or-list-resembles", near=f"'{near}'", **given)
     if not others:
         return compose("service-input-is", name=last)
     if near is None:

@@ -90,6 +90,7 @@ service-list-expected-as = Erwartet wird eine Liste, etwa { $example }.
 service-object-expected-as = Erwartet wird ein Objekt, etwa { $example }.
 service-input-resembles = Ist { $near } gemeint? Erwartet wird { $names } oder { $last }.
 service-input-or-list = Erwartet wird { $names } oder eine Liste, etwa { $example }.
+service-input-or-list-resembles = Ist { $near } gemeint? Erwartet wird { $names } oder eine Liste, etwa { $example }.
 service-discriminator-resembles = Das Feld { $field } muss eines von diesen nennen: { $names }. Ist { $near } gemeint?
 service-unknown-field-resembles-one-of =
     Unbekanntes Feld; ist `{ $field }` gemeint? Die Felder sind { $fields } und { $last }.

@@ -85,6 +85,7 @@ service-list-expected-as = Expected a list, for example { $example }.
 service-object-expected-as = Expected an object, for example { $example }.
 service-input-resembles = Did you mean { $near }? Expected { $names } or { $last }.
 service-input-or-list = Expected { $names }, or a list, for example { $example }.
+service-input-or-list-resembles = Did you mean { $near }? Expected { $names }, or a list, for example { $example }.
 service-discriminator-resembles = The field { $field } must be one of: { $names }. Did you mean { $near }?
 service-unknown-field-resembles-one-of =
     Unknown field; did you mean `{ $field }`? The fields are { $fields } and { $last }.

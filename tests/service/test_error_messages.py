@@ -170,6 +170,7 @@ def test_no_text_of_pydantic_remains(name):
         (["forbar", "slider_crank"], "/problem/mechanisms/0", "Did you mean 'fourbar'? "),
         (["xyz"], "/problem/mechanisms/0", "Expected 'fourbar', 'slider_crank', "),
         ("fourbar", "/problem/mechanisms", "Expected 'auto', or a list, for example [\"fourbar\"]."),
+        ("atuo", "/problem/mechanisms", "Did you mean 'auto'? Expected 'auto', or a list, for example [\"fourbar\"]."),
     ],
 )
 @pytest.mark.parametrize("kind", ["motion", "path", "function"])
