@@ -105,7 +105,7 @@ MADE: dict[Key, Row] = {
     ("dwell", "dwell_slot"): Row({**DWELL, "mechanism": "straight_slot"}),
     ("dwell", "dwell_watt_rocker"): Row({**PLACED_DWELL, **TURNS}),
     ("dwell", "dwell_watt_slider"): Row({**PLACED_DWELL, **SLIDES, "max_designs": 6}, 5),
-    ("parallel_motion", "watt_1"): _example("parallel_motion", "watt_1")._replace(number=2),
+    ("parallel_motion", "watt_1"): _example("parallel_motion", "watt_1"),
     ("gear_train", "gear_train"): Row(PAIR),
     ("planetary_train", "planetary_train"): Row({**SET, "fixed": "ring"}),
     ("train_series", "train_series"): Row(
