@@ -253,7 +253,7 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     page.click("text=Show the forces")
     page.wait_for_selector('[data-path="/dynamics/point_masses/0/mass"][aria-invalid="true"]')
     mass = page.locator(".field", has=page.locator('> [data-path="/dynamics/point_masses/0/mass"]'))
-    assert "greater than or equal to 0" in mass.locator("> .error").inner_text()
+    assert "at least 0" in mass.locator("> .error").inner_text()
     page.fill('[data-path="/dynamics/point_masses/0/mass"]', "0.5")
     page.click("text=Show the forces")
     page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
@@ -267,7 +267,13 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     studio.screen("forces-stated")
 
 
-QUICK_RETURN = {"kind": "quick_return", "time_ratio": 1.25, "stroke": 45.0, "max_designs": 1}
+QUICK_RETURN = {
+    "kind": "quick_return",
+    "mechanism": "crank_shaper",
+    "time_ratio": 1.25,
+    "stroke": 45.0,
+    "max_designs": 1,
+}
 PUSHED = {**PLAIN, "input_side": {"dyad": "PR"}, "output_side": {}, "max_designs": 1}
 """Driven by a slide."""
 

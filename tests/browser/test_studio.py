@@ -158,7 +158,7 @@ def test_a_fault_stands_at_its_field(studio):
     page.click("#solve")
     page.wait_for_selector('[data-path="/problem/max_designs"][aria-invalid="true"]')
     field = page.locator(".field", has=page.locator('> [data-path="/problem/max_designs"]'))
-    assert "greater than or equal to 1" in field.locator("> .error").inner_text()
+    assert "at least 1" in field.locator("> .error").inner_text()
     assert page.get_attribute('[data-path="/problem/positions/1/angle"]', "aria-invalid") == "true"
     # The browser itself reports the answer 422; nothing else may have gone wrong.
     assert [text for text in studio.wrong if "422" not in text] == []
