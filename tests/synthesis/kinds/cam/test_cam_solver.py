@@ -500,8 +500,8 @@ def test_a_sound_motion_is_not_warned_about():
 @pytest.mark.parametrize(
     ("limits", "default"),
     [
-        ({}, "pressure_angle 30"),
-        ({"pressure_angle": 45.0}, "curvature_ratio 2"),
+        ({}, "`pressure_angle` = 30"),
+        ({"pressure_angle": 45.0}, "`curvature_ratio` = 2"),
         ({"pressure_angle": 30.0}, None),
         ({"pressure_angle": 45.0, "curvature_ratio": 2.0}, None),
     ],
@@ -509,5 +509,5 @@ def test_a_sound_motion_is_not_warned_about():
 def test_a_default_that_set_the_radius_is_named(limits, default):
     summary = answered(cam(limits=limits)).summary
     assert [part for part in summary.split(". ") if "default" in part] == (
-        [] if default is None else [f"The radius is set by {default}, a default."]
+        [] if default is None else [f"The default {default} determines the radius; give your own value to change it."]
     )

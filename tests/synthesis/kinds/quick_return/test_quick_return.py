@@ -284,7 +284,7 @@ def test_a_transmission_angle_above_the_bound_of_a_swing_is_proven_impossible(me
     result = KINDS["quick_return"].solve(parse_problem({**statement, "constraints": limits}), lambda *_: None)
     assert (result.designs, result.search.complete) == ([], True)
     assert result.summary.startswith(
-        "No design exists. A rocker with a swing of 110° has a transmission angle below 35°"
+        "No design exists. If a rocker swings by 110°, the minimum transmission angle is below 35°"
     )
 
 
