@@ -162,7 +162,7 @@ def test_what_is_ordered_by_forces_and_then_cut_is_not_said_to_be_offered(client
         mechanisms=["fourbar", "watt_2"],
         layout={"link_width": 4.0, "pin_diameter": 2.0, "thickness": 2.0},
         dynamics={"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
-        constraints={"max_joint_force": 1e-9},
+        constraints={"max_joint_force": 1e-7},
         rank_by="joint_force",
     )["result"]
     assert {design["mechanism"]["type"] for design in result["designs"]} == {"fourbar"}
