@@ -25,7 +25,7 @@ MAX_LISTED_FIELDS, MAX_FIELDS_BESIDES = 40, 8
 LIMITS_PAGE = "docs/methods/overview.md#what-the-service-does-not-do"
 """Section of the documentation on what the service does not do."""
 
-_UNSUPPORTED = (
+_UNSUPPORTED_KIND_WORDS = (
     "3d", "arm", "belt", "chain", "compliant", "delta", "flexure", "hexapod", "hydraulic", "manipulator", "motor",
     "multi_dof", "parallel_robot", "pneumatic", "pulley", "robot", "scara", "serial", "spatial", "stewart", "two_dof",
 )  # fmt: skip
@@ -200,7 +200,7 @@ def explain_kind(kind: object, kinds: Iterable[str]) -> str:
     if kind is None:
         return compose("service-kind-missing", names=names)
     name = str(kind)[:MAX_STEP].lower().replace("-", "_").replace(" ", "_")
-    if any(part in name for part in _UNSUPPORTED):
+    if any(part in name for part in _UNSUPPORTED_KIND_WORDS):
         return compose("service-kind-unsupported", page=LIMITS_PAGE, names=names)
     if near := get_close_matches(name, listed, 3, MIN_KIND_SIMILARITY):
         return compose("service-kind-resembles", near=", ".join(near), names=names)

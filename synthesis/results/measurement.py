@@ -97,8 +97,7 @@ def measure_buildability(problem: LinkageProblem, design: Driven) -> Driven:
 def select_buildable_first(problem: LinkageProblem, designs: Sequence[Driven], count: int) -> list[Driven]:
     """Return designs in order, with those that cannot be built moved behind the others.
 
-    Designs that fail a check stay last. Only as many designs are measured as are needed to find ``count`` that can be
-    built, at most ``count`` more than these.
+    Designs that fail a check stay last. Designs are measured until ``count`` can be built, or ``count`` cannot.
     """
     first: list[Driven] = []
     last: list[Driven] = []

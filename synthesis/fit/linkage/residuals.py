@@ -52,6 +52,7 @@ from synthesis.fit.linkage.closure import (
     differentiate_input,
     differentiate_nodes,
 )
+from synthesis.fit.linkage.curve import find_nearest_side, find_nearest_step, measure_arcs
 from synthesis.fit.linkage.margins import (
     EQUATION_COUNT,
     count_margins,
@@ -85,10 +86,6 @@ MIN_SPEED = 1e-9
 
 MAX_COORDINATE = 1e4
 """Coordinate, in task sizes, beyond which a linkage is refused: its links would be nearly parallel."""
-
-SWITCH_SHARE = 0.98
-"""Share of a point's squared distance below which another step of the input becomes its nearest place; less than 1, so
-that equally near places do not alternate."""
 
 
 @njit(**OPTIONS)
@@ -301,34 +298,6 @@ def _weight_robustly(width: float, m: int, first: int, residuals: Real, jacobian
 
 
 @njit(**OPTIONS)
-def find_nearest_side(x: float, y: float, targets: Real, closed: bool) -> tuple[float, float, float, float]:
-    """Return the vector from the nearest place of the polyline through targets to a point, and a direction across it.
-
-    The direction is that vector's, or the normal of the side for a point on it.
-    """
-    n, least = len(targets), np.inf
-    off_x, off_y, side_x, side_y = 0.0, 0.0, 0.0, 1.0
-    for k in range(n if closed else n - 1):
-        other = k + 1 if k + 1 < n else 0
-        sx, sy = targets[other, X] - targets[k, X], targets[other, Y] - targets[k, Y]
-        gx, gy = x - targets[k, X], y - targets[k, Y]
-        square = sx * sx + sy * sy
-        share = (gx * sx + gy * sy) / square if square > 0.0 else 0.0
-        # Beyond an end of the side its corner is nearest.
-        share = min(max(share, 0.0), 1.0)
-        ex, ey = gx - share * sx, gy - share * sy
-        far = ex * ex + ey * ey
-        if far < least:
-            least, off_x, off_y = far, ex, ey
-            if square > 0.0:
-                side_x, side_y = -sy / math.sqrt(square), sx / math.sqrt(square)
-    far = math.sqrt(least)
-    if far > MIN_SPEED:
-        side_x, side_y = off_x / far, off_y / far
-    return off_x, off_y, side_x, side_y
-
-
-@njit(**OPTIONS)
 def _write_ordered_inputs(logs: Real, inputs: Real, by_last: Real) -> None:
     """Write ordered inputs from the logarithms of their steps, and the derivatives of the last one by these."""
     # The direction is that of the last accepted linkage, or of the start.
@@ -351,30 +320,6 @@ def _trace_steps(
             return False
         curve[k, 0], curve[k, 1] = places[point, 0], places[point, 1]
     return True
-
-
-@njit(**OPTIONS)
-def _find_nearest_step(target: Real, curve: Real, theta: float, low: float, per: float, near: float) -> float:
-    """Return the input at the step of the curve that is nearest to a target, or θ if that is as near."""
-    least = SWITCH_SHARE * near
-    for k in range(len(curve)):
-        square = (curve[k, 0] - target[X]) ** 2 + (curve[k, 1] - target[Y]) ** 2
-        if square < least:
-            least, theta = square, low + per * k
-    return theta
-
-
-@njit(**OPTIONS)
-def _measure_arcs(curve: Real, closed: bool, arcs: Real) -> None:
-    """Write the share of the curve's length that each of its steps stands for."""
-    n, total = len(curve), 0.0
-    for k in range(n):
-        before = k - 1 if k > 0 else (n - 1 if closed else 0)
-        after = k + 1 if k + 1 < n else (0 if closed else n - 1)
-        arcs[k] = math.hypot(curve[after, 0] - curve[before, 0], curve[after, 1] - curve[before, 1])
-        total += arcs[k]
-    for k in range(n):
-        arcs[k] /= max(total, MIN_SPEED)
 
 
 @njit(**OPTIONS)
@@ -406,7 +351,7 @@ def _write_target_rows(
             near = np.inf
             if low <= theta <= high and close_linkage(nodes, x, constants, theta, places, cosines):
                 near = (places[point, 0] - targets[first, X]) ** 2 + (places[point, 1] - targets[first, Y]) ** 2
-            theta = _find_nearest_step(targets[first], curve, theta, begin, per, near)
+            theta = find_nearest_step(targets[first], curve, theta, begin, per, near)
         if free:
             theta = _settle_input(
                 targets, first, last, nodes, x, constants, theta, low, high, places, rates, cosines, residuals[m:],
@@ -492,7 +437,7 @@ def _write_step_rows(
             nodes, x, constants, begin, per, int(setting[POINT_NODE]), places, cosines, curve
         ):
             return -1, 0.0
-        _measure_arcs(curve, full, arcs)
+        measure_arcs(curve, full, arcs)
     for k in range(steps):
         theta = inputs[k] if carried else begin + per * k
         if not close_linkage(nodes, x, constants, theta, places, cosines):

@@ -371,8 +371,8 @@ class LayoutClash(Answer):
 
     parts: tuple[str, str] = Field(description="Names of links or gears; a pin is named by its joint, as in `pin O2`.")
     distance: Length = Field(
-        description="Distance of the parts there; negative if they overlap. Of parts that cross it is minus the sum of "
-        "their half widths, and no measure of how deep they overlap."
+        description="Distance of the parts there; negative if they overlap. If their cores cross, it is minus the sum "
+        "of their half widths, which does not measure how deep they overlap."
     )
     input_angle: Angle | None = optional_field("Degrees; left out if the input slides.")
     input_place: Length | None = optional_field("Position of a sliding input, length units.")

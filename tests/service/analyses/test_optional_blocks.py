@@ -7,7 +7,7 @@ import pytest
 from service.answers.analysis import analyse
 from service.refusals import Refusal
 from synthesis.analyses import get_family
-from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus
+from tests.support.problems.fuzz_bodies import BLOCKS, FOURBAR_AS_SKELETON, analysis_corpus
 
 POSES = [{"x": 1.0, "y": 2.0, "angle": 10.0}, {"x": 2.0, "y": 3.0, "angle": 20.0}]
 ACCURACY = {"tolerances": {"length": 0.1}, "quality": {"max_error": 1.0}, "samples": 100}
@@ -17,23 +17,10 @@ FURTHER_BLOCKS = (
     {"targets": POSES, "manufacture": {"tolerances": {"length": 0.1, "pin_clearance": 0.05}, "samples": 100}},
     {"targets": POSES[:1], "manufacture": {"round": {"length": 0.5}}},
 )
-WITHOUT_COUPLER_POINT = {
-    "type": "fourbar",
-    "skeleton": {
-        "joints": {"O2": [0, 0], "O4": [6, 0], "A": [0, 2], "B": [6.5, 4.5]},
-        "links": [
-            {"name": "ground", "joints": ["O2", "O4"]},
-            {"name": "input", "joints": ["O2", "A"]},
-            {"name": "coupler", "joints": ["A", "B"]},
-            {"name": "output", "joints": ["O4", "B"]},
-        ],
-        "input_link": "input",
-    },
-}
 SHARES = 4
 """Number of shares of the blocks, one for each case."""
 
-BODIES = [*analysis_corpus([]), {"mechanism": WITHOUT_COUPLER_POINT}]
+BODIES = [*analysis_corpus([]), {"mechanism": FOURBAR_AS_SKELETON}]
 
 
 CASES = [

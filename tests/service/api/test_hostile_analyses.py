@@ -13,7 +13,7 @@ import pytest
 from service.answers.numerical import refuse_numerical_errors
 from service.refusals import Refusal
 from synthesis.analyses import list_families
-from tests.support.problems.fuzz_bodies import BLOCKS, analysis_corpus, spoil
+from tests.support.problems.fuzz_bodies import BLOCKS, FOURBAR_AS_SKELETON, analysis_corpus, spoil
 from tests.support.service.running import until
 
 FOURBAR = {
@@ -21,19 +21,6 @@ FOURBAR = {
     "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
     "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
     "assembly": "open",
-}
-FOURBAR_AS_SKELETON = {
-    "type": "fourbar",
-    "skeleton": {
-        "joints": {"O2": [0, 0], "O4": [6, 0], "A": [0, 2], "B": [6.5, 4.5]},
-        "links": [
-            {"name": "ground", "joints": ["O2", "O4"]},
-            {"name": "input", "joints": ["O2", "A"]},
-            {"name": "coupler", "joints": ["A", "B"]},
-            {"name": "output", "joints": ["O4", "B"]},
-        ],
-        "input_link": "input",
-    },
 }
 SLIDER = {
     "type": "slider_crank", "fixed_pivot": [0.0, 0.0], "links": {"crank": 2.0, "coupler": 7.0},

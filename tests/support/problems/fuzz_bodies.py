@@ -30,6 +30,21 @@ MOST_COPIES = 100
 
 LAYOUT = {"link_width": 1.0, "pin_diameter": 0.4, "thickness": 0.3}
 
+FOURBAR_AS_SKELETON = {
+    "type": "fourbar",
+    "skeleton": {
+        "joints": {"O2": [0, 0], "O4": [6, 0], "A": [0, 2], "B": [6.5, 4.5]},
+        "links": [
+            {"name": "ground", "joints": ["O2", "O4"]},
+            {"name": "input", "joints": ["O2", "A"]},
+            {"name": "coupler", "joints": ["A", "B"]},
+            {"name": "output", "joints": ["O4", "B"]},
+        ],
+        "input_link": "input",
+    },
+}
+"""A fourbar without a coupler point, which targets need."""
+
 BLOCKS: tuple[dict[str, Any], ...] = (
     {"layout": LAYOUT},
     {"layout": {**LAYOUT, "gap": 0.2, "shafts": "both_sides", "over": "cycle"}},

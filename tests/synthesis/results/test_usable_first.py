@@ -11,6 +11,7 @@ import pytest
 
 from synthesis import parse_problem, solve
 from synthesis.kinds.straight_line.design import StraightLineMetrics
+from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.results.buildability import MIN_RELATIVE_WIDTH
 from synthesis.results.pareto import measure_error
 from synthesis.results.practicality import ERROR_BAND, NEGLIGIBLE_ERROR, is_practical, order_designs
@@ -81,9 +82,15 @@ def made(
     )
 
 
+def parse_linkage_problem(statement: dict[str, Any]) -> LinkageProblem:
+    problem = parse_problem(statement)
+    assert isinstance(problem, LinkageProblem)
+    return problem
+
+
 def order(designs: list[Any], **more: Any) -> tuple[list[int], str]:
     """The order of designs, as positions in the given list, and the remark."""
-    found = order_designs(parse_problem({**LINE, **more}), designs)  # type: ignore[arg-type]
+    found = order_designs(parse_linkage_problem({**LINE, **more}), designs)
     return [next(n for n, one in enumerate(designs) if one is design) for design in found.designs], found.remark
 
 
@@ -141,17 +148,17 @@ def test_errors_below_usual_tolerances_are_ordered_by_quality(error: float) -> N
 def test_tolerances_of_the_shop_make_larger_errors_equal() -> None:
     near, sound = made(35.0, 9.0, 4.0, 0.05, quality=0.1), made(60.0, 2.0, 2.0, 0.3, quality=0.6)
     assert order([near, sound])[0] == [0, 1]
-    problem = parse_problem(
+    problem = parse_linkage_problem(
         {"kind": "path", "points": CLOSED["points"], "manufacture": {"tolerances": {"length": 1.0}}}
     )
 
     def fit(design: Any, share: float) -> Any:
-        metrics = design.metrics.model_copy(update={"rms_distance": share * problem.task_size, "excursion": 0.0})  # type: ignore[attr-defined]
+        metrics = design.metrics.model_copy(update={"rms_distance": share * problem.task_size, "excursion": 0.0})
         design.metrics = metrics.model_copy(update={"curve_distance": 0.0})
         return design
 
     designs = [fit(near, 5e-4), fit(sound, 3e-3)]
-    assert order_designs(problem, designs).designs == designs[::-1]  # type: ignore[arg-type]
+    assert order_designs(problem, designs).designs == designs[::-1]
 
 
 def test_twice_the_error_and_two_links_more_must_pay_in_quality() -> None:

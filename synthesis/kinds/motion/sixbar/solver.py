@@ -2,8 +2,8 @@
 
 A round, for all topologies of the requested types together:
 
-1. random linkages that close over as many inputs descend on all of their dimensions to the positions, with the
-   constraints as penalties;
+1. random linkages that close at one input for each position descend on all of their dimensions, with the constraints
+   as penalties;
 2. those that miss form a pool, whose members hop from basin to basin;
 3. those that meet the positions leave the pool. They have freedoms left, which serve a larger transmission angle and
    smaller links as long as the positions stay met.
@@ -330,7 +330,7 @@ class SixbarSearch:
         for _ in range(FINAL_DESCENTS):
             starts = [normalize_heading(fit) for fit in fits]
             fits = sort_fits(descend_softly(starts, task, HOP_STEPS, FINE_TOLERANCE, SOFT_WEIGHT))
-        # Positions that can be met at the limits are met by now; the others keep a small violation.
+        # These descents meet the positions if that is possible at the limits; the other fits violate limits a little.
         met, missed = _take_met(fits)
         ends = [*met, *sort_fits(fit_constrained(missed, task))]
         return self._project_on_exact(ends, task) if self.exact.any() else ends

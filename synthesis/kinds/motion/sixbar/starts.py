@@ -1,4 +1,4 @@
-"""Random linkages that close at as many inputs as a task has targets, as starts of fits to them.
+"""Random linkages that close at one input for each target of a task, as starts of fits.
 
 The nodes are normally distributed about the targets. Most random linkages do not close over a whole rotation of the
 input: they are drawn until some do, and the one nearest to the targets is taken.
