@@ -11,7 +11,7 @@ from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 
 X, Y = 3, 4
-"""Columns of a target with its place, as in :mod:`synthesis.fit.linkage.residuals`."""
+"""Columns of a target with its place; :mod:`synthesis.fit.linkage.residuals` has the others."""
 
 MIN_LENGTH = 1e-9
 """Length, in task sizes, below which a direction is undefined."""

@@ -52,6 +52,8 @@ from synthesis.fit.linkage.closure import (
     differentiate_input,
     differentiate_nodes,
 )
+from synthesis.fit.linkage.curve import X as X
+from synthesis.fit.linkage.curve import Y as Y
 from synthesis.fit.linkage.curve import find_nearest_side, find_nearest_step, measure_arcs
 from synthesis.fit.linkage.margins import (
     EQUATION_COUNT,
@@ -71,8 +73,9 @@ from synthesis.numerics.levenberg import ROWS
 PLACE, TURN, DIRECTION, ARM = range(4)
 """Kinds of targets."""
 
-KIND, FIRST_NODE, SECOND_NODE, X, Y, ROOT, SLOT, FREE, TOLERANCE, SECOND_TOLERANCE = range(10)
-"""Columns of targets."""
+KIND, FIRST_NODE, SECOND_NODE = range(X)
+ROOT, SLOT, FREE, TOLERANCE, SECOND_TOLERANCE = range(Y + 1, Y + 6)
+"""Columns of targets, without those of the place."""
 
 TARGET_SIZE = 10
 """Number of columns of targets."""
