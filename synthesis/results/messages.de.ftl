@@ -44,6 +44,7 @@ results-name-in-words =
         [driver_coupler] Koppel des Antriebszweischlags
         [driver_pivot_region] Bereich des Antriebsgestellpunkts
         [dwells_apart] Rasten getrennt
+        [efficiency] Wirkungsgrad
         [energy_balance] Energiebilanz
         [equal_stops] gleiche Raststellen
         [equal_tooth_sums] gleiche Zähnesummen
@@ -149,6 +150,7 @@ results-name-in-words =
         [reverse_fits] Rückwärtsgang passt
         [reversed_link] umgekehrtes Glied
         [rim_speed] Umfangsgeschwindigkeit
+        [ring_diameter] Durchmesser des Hohlrads
         [ring_trimmed] Hohlrad beschnitten
         [roller_clears_wheel] Rolle frei vom Rad
         [roller_distance] Rollenabstand
