@@ -101,7 +101,7 @@ def _parse_table(source: str, text: str) -> JsonObject:
     if unit is not None:
         problem["length_unit"] = unit
     ends = [{name: cells.get(name) for name in ("x", "y")} for cells in (found[:1] + found[-1:])]
-    if kind == "path" and len(found) > MIN_CLOSED_POINTS and ends[0] == ends[1]:
+    if _TABLES[kind].closes and len(found) > MIN_CLOSED_POINTS and ends[0] == ends[1]:
         found.pop()
         problem["closed"] = True
     return problem
