@@ -13,8 +13,9 @@ from typing import Any
 import pytest
 
 from synthesis.analyses import parse_request
+from synthesis.dispatch import solve
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
-from synthesis.registry import parse_problem
+from synthesis.registry import KINDS, parse_problem
 from tests.support.loops import check_each
 from tests.support.sixbars.names import WRONG_NAME
 
@@ -73,6 +74,40 @@ def test_every_block_of_json_can_be_posted_as_it_stands() -> None:
     assert stated.count(ANALYSIS) > 11
     for _, code in blocks("jsonc"):
         assert not {"problem", "mechanism", "kind"} & set(json.loads(code))
+
+
+MACHINES = ROOT / "docs" / "tasks" / "by-machine.md"
+
+TRADE_WORDS = (
+    "hinge", "wiper", "gripper", "press", "excavator", "landing gear", "knee", "cam follower", "steering", "ratchet",
+    "winch", "rotor", "flywheel", "lathe", "clock", "shaper", "stirrer", "door", "tray",
+)  # fmt: skip
+"""Words with which somebody looks for a mechanism; they must lead to a request."""
+
+
+def test_words_of_the_trade_lead_to_a_complete_request() -> None:
+    text = MACHINES.read_text("utf-8")
+    rows = re.findall(r"^\| ([^|]+) \| \[([^\]]+)\]\(#([\w-]+)\) \|$", text, re.MULTILINE)
+    assert [word.lower() for word, _, _ in rows] == sorted(word.lower() for word, _, _ in rows)
+    words = " ".join(word for word, _, _ in rows)
+    assert [word for word in TRADE_WORDS if word not in words] == []
+    sections = dict(re.findall(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL))
+    # Every title in the table has a section with one request, and every section is in the table.
+    assert {title for _, title, _ in rows} == set(sections)
+    kinds = []
+    for title, section in sections.items():
+        (body,) = (code for language, code in BLOCK.findall(section) if language == "json")
+        kinds.append(parse_request_body(json.loads(body)))
+        assert LINK.search(section), title
+    assert set(kinds) == set(KINDS)
+
+
+@pytest.mark.slow
+def test_requests_of_machines_are_answered_with_designs() -> None:
+    for page, code in blocks("json"):
+        if page == MACHINES:
+            result = solve(parse_problem(json.loads(code)["problem"]))
+            assert any(design.verification.passed for design in result.designs), code
 
 
 SHELL = blocks("sh")
