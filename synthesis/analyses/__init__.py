@@ -8,7 +8,15 @@ from __future__ import annotations
 
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cams import barrel_cam, cam, camshaft, contour_cam
-from synthesis.analyses.gears import gear_pair, gear_train, gearbox, planetary_train, running_pair, train_series
+from synthesis.analyses.gears import (
+    gear_pair,
+    gear_train,
+    gearbox,
+    planetary_train,
+    rack_pinion,
+    running_pair,
+    train_series,
+)
 from synthesis.analyses.linkages import linkage
 from synthesis.analyses.machines import engine, flywheel, geneva, ratchet, rotor, universal_joint
 from synthesis.model.mechanism_types import list_mechanism_types
@@ -30,6 +38,7 @@ FAMILIES: dict[str, Family] = {
         gearbox.LAYSHAFT_FAMILY,
         geneva.FAMILY,
         planetary_train.FAMILY,
+        rack_pinion.FAMILY,
         ratchet.FAMILY,
         rotor.FAMILY,
         running_pair.FAMILY,

@@ -9,7 +9,7 @@ from synthesis.analyses import FAMILIES, parse_request
 from synthesis.mechanisms.base import MechanismError as StatedError
 from tests.cases import cases
 
-TYPES = ["helical_pair", "bevel_pair", "worm_set"]
+TYPES = ["helical_pair", "bevel_pair", "worm_set", "rack_pinion"]
 
 
 def analysed(type_, **fields):
@@ -142,3 +142,42 @@ def test_a_diametral_pitch_replaces_the_module():
     analysed("gear_pair", teeth=[20, 50], module=0.125, diametral_pitch=8.0)
     with pytest.raises(ValueError, match="either module or diametral_pitch"):
         analysed("gear_pair", teeth=[20, 50], module=2.0, diametral_pitch=8.0)
+
+
+@pytest.mark.parametrize(("angle", "teeth"), [(14.5, 32), (20.0, 18), (25.0, 12)])
+def test_fewest_teeth_on_a_rack(angle, teeth):
+    """Norton, Table 9-4: full-depth teeth."""
+    found = analysed("rack_pinion", teeth=teeth, pressure_angle=angle)
+    assert found["least_teeth"] == teeth
+    assert found["interference"] is False
+    assert analysed("rack_pinion", teeth=teeth - 1, pressure_angle=angle)["interference"] is True
+    # With its least shift a smaller pinion is just free.
+    shift = analysed("rack_pinion", teeth=10, pressure_angle=angle)["least_shift"]
+    assert analysed("rack_pinion", teeth=10, pressure_angle=angle, shift=shift)["interference"] is False
+    assert analysed("rack_pinion", teeth=10, pressure_angle=angle, shift=shift - 1e-6)["interference"] is True
+
+
+@pytest.mark.parametrize("fields", [{}, {"shift": 0.3}, {"addendum": [0.8, 0.9]}, {"helix_angle": 25.0}])
+def test_a_rack_is_a_gear_of_infinite_radius(fields):
+    teeth, module = 24, 2.5
+    found = analysed("rack_pinion", teeth=teeth, module=module, **fields)
+    # The tips of external gears with shift are shortened; to a large gear with the opposite shift they are not.
+    shift = fields.get("shift", 0.0)
+    wide = {name: value for name, value in fields.items() if name != "shift"}
+    pair = analysed("gear_pair", teeth=[teeth, 500], module=module, shift=[shift, -shift], **wide)
+    wider = analysed("gear_pair", teeth=[teeth, 1000], module=module, shift=[shift, -shift], **wide)
+    # A gear of z teeth differs from a rack by a term in 1/z, most of which extrapolation removes.
+    assert found["contact_ratio"] == pytest.approx(2.0 * wider["contact_ratio"] - pair["contact_ratio"], abs=5e-4)
+    gear = pair["gears"][0]
+    assert found["pitch_diameter"] == pytest.approx(gear["pitch_diameter"])
+    assert found["base_diameter"] == pytest.approx(gear["base_diameter"])
+    assert found["tip_diameter"] == pytest.approx(gear["tip_diameter"])
+    assert found["interference"] == gear["fillet_interference"]
+
+
+def test_a_rack_travels_a_circumference_for_each_turn():
+    found = analysed("rack_pinion", teeth=20, module=2.0)
+    assert found["travel"] == pytest.approx(40.0 * math.pi)
+    assert found["speed"] == pytest.approx(20.0)
+    assert found["travel"] == pytest.approx(20 * found["circular_pitch"])
+    assert analysed("rack_pinion", teeth=20, module=2.0, shift=0.5)["reference_distance"] == pytest.approx(21.0)
