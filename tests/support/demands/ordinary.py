@@ -24,6 +24,9 @@ TRANSMISSION, RATIO, REACH = 30.0, 10.0, 5.0
 """What practice asks of the transmission angle, degrees, of the longest link over the shortest, and of the longest link
 over the task's size."""
 
+WIDTH = 0.02
+"""Width of the links, as a share of the longest, below which a design cannot be built."""
+
 Statement = dict[str, Any]
 
 
@@ -46,8 +49,20 @@ def _buildable(result: Any) -> bool:
         and (first.metrics.link_ratio <= RATIO or "ratio" in result.summary)
         and (not _even(first) or "task's size" in result.summary)
     )
-    near = [design for design in result.designs if measure_error(design) <= error and _comparable(first, design)]
+    # What nobody can build is listed last, however well it runs.
+    near = [
+        design
+        for design in result.designs
+        if measure_error(design) <= error
+        and _comparable(first, design)
+        and _can_be_built(design) >= _can_be_built(first)
+    ]
     return told and not any(map(_sound, near)) and (_even(first) or not any(map(_even, near)))
+
+
+def _can_be_built(design: Any) -> bool:
+    width = getattr(design.metrics, "relative_link_width", None)
+    return width is None or width >= WIDTH
 
 
 def _comparable(first: Any, design: Any) -> bool:
