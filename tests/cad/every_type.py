@@ -134,6 +134,7 @@ MADE: dict[Key, Row] = {
     ("function", "watt_2"): _sixbar(FUNCTION, "watt_2"),
     ("function", "stephenson_2"): _sixbar(FUNCTION, "stephenson_2"),
     ("function", "stephenson_3"): _sixbar(FUNCTION, "stephenson_3"),
+    ("function", "eightbar"): _sixbar(FUNCTION, "eightbar"),
     ("cam", "cam"): Row(DRIVES["roller"]),
     ("cam", "barrel_cam"): Row(BARREL),
     ("balancing", "skeleton"): _example("balancing", "skeleton"),
