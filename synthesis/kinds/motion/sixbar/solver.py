@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.message import compose
 from synthesis.fit.linkage.closure import trace_linkage
 from synthesis.fit.linkage.descent import (
@@ -185,6 +185,7 @@ class LinkageSearch:
         self.problem, self.family = problem, family
         self.task, self.target = make_motion_task(problem), make_target_poses(problem)
         self.kinds: dict[Topology, str] = {form: kind for kind in types for form in list_forms(kind, guides=True)}
+        self.places = {form: (np.array(list(form.pin_names)), 1e6 * n) for n, form in enumerate(self.kinds)}
         self.limits = Limits(problem, self.task)
         self.exact: Real = np.all(self.target.exact_mask, axis=1)
         self.needed = compute_needed_motion(self.task)
@@ -249,12 +250,11 @@ class LinkageSearch:
 
     def _drop_near(self, pool: Sequence[Fit], met: Sequence[Fit]) -> list[Fit]:
         """Return the fits of a pool that are not near one that meets the positions: they would lead to the same one."""
-        places = [np.array(self._list_joints(fit)) for fit in met]
-        return [
-            fit
-            for fit in pool
-            if not any(np.abs(place - self._list_joints(fit)).max() < MIN_SEPARATION for place in places)
-        ]
+        if not (pool and met):
+            return list(pool)
+        ours, theirs = (np.array([self._list_joints(fit) for fit in fits]) for fits in (pool, met))
+        distances = np.abs(ours[:, None] - theirs).max(axis=2).min(axis=1)
+        return [fit for fit, distance in zip(pool, distances, strict=True) if distance >= MIN_SEPARATION]
 
     def _draw_starts(self, task: FitTask, rng: np.random.Generator) -> list[Fit]:
         weights = [weight for kind in dict.fromkeys(self.kinds.values()) for weight in SAMPLING_WEIGHTS[kind]]
@@ -273,10 +273,10 @@ class LinkageSearch:
         chosen = select_distinct([self._list_joints(one.fit) for one in ordered], most, MIN_SEPARATION)
         return [ordered[k] for k in chosen]
 
-    def _list_joints(self, fit: Fit) -> list[complex]:
+    def _list_joints(self, fit: Fit) -> Complex:
         """Return the joints of a fit, and a place of its topology far from those of all others."""
-        joints = [complex(*fit.x[2 * node : 2 * node + 2]) for node in fit.topology.pin_names]
-        return [*joints, 1e6 * list(self.kinds).index(fit.topology)]
+        nodes, place = self.places[fit.topology]
+        return np.append(fit.x[2 * nodes] + 1j * fit.x[2 * nodes + 1], place)
 
     def _evaluate(self, one: Candidate) -> Candidate:
         """Return a candidate with its value, the quality of its motion."""
