@@ -47,7 +47,13 @@ from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
 from synthesis.model.design_interface import AnyDesign
 from synthesis.model.dimension import Dimension
-from synthesis.model.linkage.answer import CouplerPoint, FourbarMechanism, LinkageDesign, MultiloopMechanism
+from synthesis.model.linkage.answer import (
+    CouplerPoint,
+    FourbarMechanism,
+    LinkageDesign,
+    MultiloopMechanism,
+    SixbarMechanism,
+)
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from synthesis.model.problem import ProblemBase
 
@@ -144,7 +150,7 @@ def make_guided(design: LinkageDesign, problem: MotionProblem | PathProblem, lin
         )
         for target in design.targets
     ]
-    driven = not isinstance(design.mechanism, MultiloopMechanism) or "driver_coupler" in design.mechanism.links
+    driven = not isinstance(design.mechanism, SixbarMechanism) or "driver_coupler" in design.mechanism.links
     name = (TYPE_NAMES if driven else SIXBAR_NAMES)[design.mechanism.type]
     return Content(
         name,
