@@ -137,6 +137,7 @@ def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         summary="A REST service that designs mechanisms.",
         description=_DESCRIPTION,
         version=version("mechsynth"),
+        license_info={"name": "MIT", "identifier": "MIT"},
         lifespan=lifespan,
         openapi_url=None,
         docs_url=None,

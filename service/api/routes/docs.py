@@ -17,6 +17,7 @@ from starlette.staticfiles import StaticFiles
 from service.api.http import problem_details
 from service.api.http.auth import SECURITY_SCHEME
 from service.api.http.cached_representation import Representation
+from service.api.http.openapi_schemas import simplify_schemas
 from service.api.http.problem_details import ProblemDetails
 from service.api.routes import analyses
 
@@ -51,7 +52,7 @@ def install(app: FastAPI) -> None:
     @cache
     def build_document(keys: bool) -> Representation:
         whole = app.openapi()
-        return Representation(to_json(whole if keys else _without_keys(whole)), "application/json")
+        return Representation(to_json(whole if keys else remove_keys(whole)), "application/json")
 
     @app.get("/openapi.json", include_in_schema=False)
     async def openapi_document(request: Request) -> Response:
@@ -78,6 +79,7 @@ def _complete(document: dict[str, Any]) -> None:
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
     analyses.complete(document)
+    document["servers"] = [{"url": "/", "description": "The service that has sent this document."}]
     document["components"]["securitySchemes"] = {
         SECURITY_SCHEME: {
             "type": "http",
@@ -87,8 +89,9 @@ def _complete(document: dict[str, Any]) -> None:
     }
     for path, methods in document["paths"].items():
         for operation in methods.values():
-            if path.startswith("/v1/"):
-                operation["security"] = [{SECURITY_SCHEME: []}]
+            is_guarded = path.startswith("/v1/")
+            operation["security"] = [{SECURITY_SCHEME: []}] if is_guarded else []
+            if is_guarded:
                 _add(operation, _TENANT_RESPONSES)
             _add(operation, _CONNECTION_RESPONSES)
     # The framework adds its own kind of 422 to every operation with parameters; that response does not exist here.
@@ -98,10 +101,11 @@ def _complete(document: dict[str, Any]) -> None:
                 del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         schemas.pop(name, None)
+    simplify_schemas(document)
 
 
-def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
-    """Return the document of a service without keys, without security requirements."""
+def remove_keys(document: dict[str, Any]) -> dict[str, Any]:
+    """Return the document of a service without keys, which no operation requires."""
     paths = {
         path: {
             method: {name: value for name, value in operation.items() if name != "security"}
@@ -110,7 +114,7 @@ def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
         for path, methods in document["paths"].items()
     }
     components = {name: value for name, value in document["components"].items() if name != "securitySchemes"}
-    return {**document, "paths": paths, "components": components}
+    return {**document, "security": [], "paths": paths, "components": components}
 
 
 def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:

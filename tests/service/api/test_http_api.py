@@ -143,7 +143,7 @@ def test_the_openapi_document_is_complete(openapi):
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)
-    assert all(schema.get("title") for schema in schemas.values())
+    assert not any("title" in schema for schema in schemas.values()), "generators name classes by titles"
     references = set(re.findall(r'"#/components/schemas/([^"]+)"', json.dumps(openapi)))
     assert references <= set(schemas)
     assert {
