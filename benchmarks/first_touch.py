@@ -7,7 +7,8 @@ A real server is started on a free loopback port. The times run from the start o
 the request to the last byte of the answer. *Cold* means that no document of the API is in the cache, so that the
 server writes them; *warm* that an earlier start has written them. Kernels are compiled in either case. After some idle
 seconds the resident memory of the processes is read: of the server, of one worker, and of all processes together, where
-shared memory counts once.
+shared memory counts once. On a machine that is busy with other things the times say how busy; the processor time of
+the server says what its start costs.
 """
 
 from __future__ import annotations
@@ -63,7 +64,8 @@ def started(folder: Path, cache: Path) -> Iterator[tuple[str, int, dict[str, flo
         until(lambda: _answers(url), 120.0, "an answer")
         alive_s = time.monotonic() - began
         until(lambda: b"ready" in announced.read_bytes(), 120.0, "readiness")
-        yield url, process.pid, {"/healthz": alive_s, "ready": time.monotonic() - began}
+        times = {"/healthz": alive_s, "ready": time.monotonic() - began, "server until ready, CPU s": _cpu(process.pid)}
+        yield url, process.pid, times
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait(STOP_S)
@@ -93,7 +95,7 @@ def main() -> None:
     parser.add_argument("--idle", type=float, default=20.0, help="idle seconds before the memory is read")
     options = parser.parse_args()
     print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}; medians of {options.runs} (s, MB)")
-    print(f"{'':20} {'goal':>8} {'cold':>8} {'warm':>8}")
+    print(f"{'':26} {'goal':>8} {'cold':>8} {'warm':>8}")
     runs: dict[bool, list[dict[str, float]]] = {True: [], False: []}
     for _ in range(options.runs):
         with tempfile.TemporaryDirectory() as cache:
@@ -102,7 +104,7 @@ def main() -> None:
     for name in runs[True][0]:
         cold, warm = (statistics.median(figures[name] for figures in runs[which]) for which in (True, False))
         goal = f"{GOALS[name]:g}" if name in GOALS else ""
-        print(f"{name:20} {goal:>8} {cold:8.3f} {warm:8.3f}")
+        print(f"{name:26} {goal:>8} {cold:8.3f} {warm:8.3f}")
     print(f"load {os.getloadavg()[0]:.1f}")
 
 
@@ -130,6 +132,12 @@ def _children(pid: int) -> dict[int, str]:
             command = Path(f"/proc/{each}/cmdline").read_text()
             found |= {each: "worker" if "spawn_main" in command else "other", **_children(each)}
     return found
+
+
+def _cpu(pid: int) -> float:
+    """Return the processor time of a process without its children, seconds."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _memory(pid: int, kind: str) -> float:

@@ -76,7 +76,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         answers.start(after=lambda: kernels.has(ANALYSIS_PART) or (kernels.is_ended and answers.is_awaited))
         app.state.documents = documents = Documents(build_documents, *log_as, ahead=settings.compile_ahead)
         documents.start(after=lambda: executor.count_ready_workers() > 0)
-        app.state.readers = readers = ImportDesk(*log_as, metrics=measured)
+        app.state.readers = readers = ImportDesk(*log_as, metrics=measured, forks=lambda: answers.is_loaded)
         app.state.workshop = workshop = Workshop(
             settings.job_memory_mb, settings.job_timeout_s, *log_as, metrics=measured
         )
