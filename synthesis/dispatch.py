@@ -28,6 +28,7 @@ from synthesis.results.pareto import pareto_front
 from synthesis.results.practicality import order_designs
 from synthesis.results.remarks import append_remark, write_quantity
 from synthesis.results.rounding import round_designs
+from synthesis.usable_search import search_usable
 
 __all__ = [
     "Progress",
@@ -76,14 +77,15 @@ def solve(problem: ProblemBase, progress: Progress | None = None) -> AnyResult:
         rest = scale_progress(told, SEARCH_SHARE, 1.0)
         result = _apply_relaxation(asked, result, find_nearest_miss(asked, kind, rest), kind)
     if isinstance(problem, LinkageProblem):
-        result = _finish_linkages(problem, result, kind)
+        result = _finish_linkages(problem, result, kind, scale_progress(told, SEARCH_SHARE, 1.0))
     told(1.0, compose("results-verified"))
     result = result.model_copy(update={"summary": append_remark(result.summary, _describe_listed(problem, result))})
     return result.model_copy(update={"messages": list_messages(result)})
 
 
-def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) -> AnyResult:
-    """Rank the linkages of a search, round them to the grid, and add what the blocks of the problem request."""
+def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind, progress: Progress) -> AnyResult:
+    """Complete an answer: search for sound designs if none was found, rank, round, and add what blocks request."""
+    result, searched = search_usable(problem, result, kind, progress)
     # Order matters: expensive measures first select and rank, rounding changes designs, and missing results come last.
     is_measured = problem.rank_by in MAX_EXAMINED
     if is_measured:
@@ -93,7 +95,7 @@ def _finish_linkages(problem: LinkageProblem, result: AnyResult, kind: AnyKind) 
         result = _round_designs(problem, result, kind)
     measured = [measure_buildability(problem, design) for design in result.designs]
     # Practicality is judged in the default order, in which designs were searched.
-    designs, remark = order_designs(widen_search(problem), measured)
+    designs, remark = order_designs(widen_search(problem), measured, searched=searched)
     if is_measured:
         result = rank_by_measure(problem, result.model_copy(update={"designs": designs}))
     else:

@@ -68,6 +68,14 @@ class FollowerLoad:
                 expected = "kinematics-positive" if name == "mass" else "kinematics-at-least"
                 raise DimensionError(name, expected, value, least=0)
 
+    @property
+    def damping_ratio(self) -> float:
+        """Share of the critical damping 2 √(k m); infinite for a damped mass without a spring."""
+        if not self.damping:
+            return 0.0
+        critical = 2.0 * math.sqrt(self.spring_rate * self.mass)
+        return self.damping / critical if critical else math.inf
+
     def with_damping_ratio(self, ratio: float) -> FollowerLoad:
         """Return the load with the damping c = 2 ζ √(k m) of a ratio ζ."""
         if not (math.isfinite(ratio) and ratio >= 0.0):

@@ -16,6 +16,7 @@ analyses-cutter-needs-ring = nur ein Hohlrad wird mit einem Schneidrad verzahnt;
 analyses-cutter-too-large = ein Schneidrad hat weniger Zähne als das Hohlrad, das es verzahnt
 analyses-first-gear-without-flank = lässt dem ersten Rad keinen Zahn über dem Grundkreis
 analyses-second-gear-without-flank = lässt dem zweiten Rad keinen Zahn über dem Grundkreis
+analyses-module-and-pitch = entweder module oder diametral_pitch angeben
 analyses-pinion-not-first = geben Sie das Ritzel zuerst an; das Rad hat mindestens ebenso viele Zähne
 analyses-ring-not-second = ein Hohlrad hat mehr Zähne als sein Ritzel; geben Sie das Hohlrad an zweiter Stelle an
 analyses-second-helix-angle-too-large = das zweite Rad bräuchte einen Schrägungswinkel von { $angle }°

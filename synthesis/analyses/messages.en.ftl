@@ -17,6 +17,7 @@ analyses-cutter-needs-ring = only a ring is shaped by a cutter; leave it out
 analyses-cutter-too-large = a cutter has fewer teeth than the ring that it shapes
 analyses-first-gear-without-flank = leaves the first gear no tooth above its base circle
 analyses-second-gear-without-flank = leaves the second gear no tooth above its base circle
+analyses-module-and-pitch = give either module or diametral_pitch
 analyses-pinion-not-first = give the pinion first; the gear has at least as many teeth
 analyses-ring-not-second = a ring has more teeth than its pinion; give the ring second
 analyses-second-helix-angle-too-large = the second gear would need a helix angle of { $angle }°

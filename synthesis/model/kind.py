@@ -119,6 +119,9 @@ class Kind(Generic[P, R]):
         Measures a finished mechanism, for example a rounded one, that meets only approximately the targets that designs
         must meet exactly. Takes the statement, an exact design and the mechanism, and returns the design of the
         mechanism, or None if it cannot be driven.
+    usable : callable, optional
+        Returns the statement of a second search for sound designs, from a statement with their limits as constraints;
+        None if no search is worth while. Without it, no second search is made.
     gallery : tuple of NamedExample
         Examples with their names, in the order of the statement's examples.
     brief : callable, optional
@@ -148,6 +151,7 @@ class Kind(Generic[P, R]):
     nearer: Callable[[P, Sequence[Any], Progress], Sequence[Any] | None] | None = None
     brief: Callable[[P], bool] = return_false
     nearly: Callable[[P, Any, Any], Any] | None = None
+    usable: Callable[[P], P | None] | None = None
     ratio_check: RatioCheck | None = None
     easing: TaskEasing[P] | None = None
     is_first_loaded: bool = False

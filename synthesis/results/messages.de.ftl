@@ -44,6 +44,7 @@ results-name-in-words =
         [driver_coupler] Koppel des Antriebszweischlags
         [driver_pivot_region] Bereich des Antriebsgestellpunkts
         [dwells_apart] Rasten getrennt
+        [efficiency] Wirkungsgrad
         [energy_balance] Energiebilanz
         [equal_stops] gleiche Raststellen
         [equal_tooth_sums] gleiche Zähnesummen
@@ -149,6 +150,7 @@ results-name-in-words =
         [reverse_fits] Rückwärtsgang passt
         [reversed_link] umgekehrtes Glied
         [rim_speed] Umfangsgeschwindigkeit
+        [ring_diameter] Durchmesser des Hohlrads
         [ring_trimmed] Hohlrad beschnitten
         [roller_clears_wheel] Rolle frei vom Rad
         [roller_distance] Rollenabstand
@@ -265,10 +267,37 @@ results-ranked-by-unknown-measure =
 
 # Order of the designs by practicality; a band is the permitted multiple of the smallest error
 
-results-no-design-practical = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
-results-no-near-design-practical = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
-results-no-design-with-even-links = Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
-results-no-near-design-with-even-links = Kein Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+results-no-design-practical =
+    { $among ->
+        [buildable] Keiner dieser baubaren Entwürfe hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+        [listed] Keiner dieser Entwürfe hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+       *[found] Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+    }
+results-no-near-design-practical =
+    { $among ->
+        [buildable] Keiner dieser baubaren Entwürfe mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+        [listed] Keiner dieser Entwürfe mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+       *[found] Kein gefundener Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }, ohne dass ein Glied länger als das { $reach }-Fache der Größe der Aufgabe ist.
+    }
+results-no-design-with-even-links =
+    { $among ->
+        [buildable] Keiner dieser baubaren Entwürfe hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+        [listed] Keiner dieser Entwürfe hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+       *[found] Kein gefundener Entwurf hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+    }
+results-no-near-design-with-even-links =
+    { $among ->
+        [buildable] Keiner dieser baubaren Entwürfe mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+        [listed] Keiner dieser Entwürfe mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+       *[found] Kein gefundener Entwurf mit höchstens dem { $band }-Fachen des kleinsten Fehlers hat einen Übertragungswinkel von mindestens { $angle }° und ein Gliedverhältnis von höchstens { $ratio }.
+    }
+results-sound-found-by-limits =
+    { $count ->
+        [one] Eine zweite Suche, die einen Übertragungswinkel von { $angle }° und ein Gliedverhältnis von { $ratio } forderte, fand { $count } Entwurf; sein Fehler ist { $error }.
+       *[other] Eine zweite Suche, die einen Übertragungswinkel von { $angle }° und ein Gliedverhältnis von { $ratio } forderte, fand { $count } Entwürfe; ihr kleinster Fehler ist { $error }.
+    }
+results-sound-found-far = Eine zweite Suche, die einen Übertragungswinkel von { $angle }° und ein Gliedverhältnis von { $ratio } forderte, fand keinen Entwurf mit einem Fehler unter { $error }.
+results-sound-before-accurate = Sie stehen vor genaueren Entwürfen, die schlecht übertragen oder sehr ungleiche Glieder haben.
 results-first-for-soundness = Der erste Entwurf hat das { $factor }-Fache des Fehlers von Entwurf { $number }, aber einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
 results-first-less-accurate = Entwurf { $number } ist genauer: Der erste Entwurf hat das { $factor }-Fache seines Fehlers.
 results-unbuildable-last =

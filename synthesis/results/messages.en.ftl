@@ -58,10 +58,37 @@ results-ranked-by-unknown-measure =
 
 # Order of the designs by practicality; a band is the permitted multiple of the smallest error
 
-results-no-design-practical = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
-results-no-near-design-practical = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
-results-no-design-with-even-links = No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
-results-no-near-design-with-even-links = No design within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+results-no-design-practical =
+    { $among ->
+        [buildable] None of these designs that can be built has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+        [listed] None of these designs has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+       *[found] No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+    }
+results-no-near-design-practical =
+    { $among ->
+        [buildable] None of these designs that can be built and are within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+        [listed] None of these designs within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+       *[found] No design found within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less and no link longer than { $reach } times the task's size.
+    }
+results-no-design-with-even-links =
+    { $among ->
+        [buildable] None of these designs that can be built has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+        [listed] None of these designs has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+       *[found] No design found has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+    }
+results-no-near-design-with-even-links =
+    { $among ->
+        [buildable] None of these designs that can be built and are within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+        [listed] None of these designs within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+       *[found] No design found within { $band } times the smallest error has a transmission angle of { $angle }° or more and a link ratio of { $ratio } or less.
+    }
+results-sound-found-by-limits =
+    { $count ->
+        [one] A second search, which required a transmission angle of { $angle }° and a link ratio of { $ratio }, found { $count } design; its error is { $error }.
+       *[other] A second search, which required a transmission angle of { $angle }° and a link ratio of { $ratio }, found { $count } designs; their smallest error is { $error }.
+    }
+results-sound-found-far = A second search, which required a transmission angle of { $angle }° and a link ratio of { $ratio }, found no design with an error below { $error }.
+results-sound-before-accurate = They come before designs that are more accurate but not sound.
 results-first-for-soundness = The first design has { $factor } times the error of design { $number }, but a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
 results-first-less-accurate = Design { $number } is more accurate: the first design has { $factor } times its error.
 results-unbuildable-last =

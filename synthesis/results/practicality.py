@@ -135,8 +135,19 @@ def sort_by_practice(problem: LinkageProblem, designs: Sequence[Design]) -> list
     return [*workable, *others, *(design for design in designs if not design.verification.passed)]
 
 
-def order_designs(problem: LinkageProblem, designs: Sequence[Design]) -> OrderedDesigns[Design]:
-    """Sort measured designs by :func:`sort_by_practice`, and explain in remarks what decides the order."""
+def order_designs(
+    problem: LinkageProblem, designs: Sequence[Design], *, searched: bool = True
+) -> OrderedDesigns[Design]:
+    """Sort measured designs by :func:`sort_by_practice`, and explain in remarks what decides the order.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+    designs : sequence
+        Designs in the order of their kind.
+    searched : bool
+        Whether sound designs were searched for, so that a remark may say that none was found.
+    """
     ordered = sort_by_practice(problem, designs)
     passed = [design for design in ordered if design.verification.passed]
     if not passed:
@@ -147,7 +158,7 @@ def order_designs(problem: LinkageProblem, designs: Sequence[Design]) -> Ordered
         # Classes precede accuracy, so that only designs of the first one are compared.
         compared = {n: design for n, design in enumerate(passed, 1) if problem.classify_design(design) == number}
         remarks += [
-            _describe_grade(problem, list(compared.values())),
+            _describe_grade(problem, list(compared.values()), searched),
             _describe_error(problem, compared),
             _describe_extra_links(problem, compared),
         ]
@@ -229,20 +240,26 @@ def _describe_unbuildable(problem: LinkageProblem, passed: Sequence[DrivenDesign
     return compose("results-none-buildable", share=share, width=f"{widest:.3g}", unit=problem.length_unit)
 
 
-def _describe_grade(problem: LinkageProblem, passed: Sequence[DrivenDesign]) -> str:
-    """Describe what the first design lacks."""
+def _describe_grade(problem: LinkageProblem, passed: Sequence[DrivenDesign], searched: bool) -> str:
+    """Describe what the first design lacks, and whether another one was searched for."""
     grade = grade_design(passed[0])
     if grade == 0:
         return ""
     least = _find_least_error(problem, passed)
     # If all designs have small errors, the remark need not mention the errors.
-    all_near = all(_measure_error(problem, design) <= ERROR_BAND * least for design in passed)
+    near = [design for design in passed if _measure_error(problem, design) <= ERROR_BAND * least]
+    all_near = len(near) == len(passed)
     if grade == 1:
         message_id = "results-no-design-practical" if all_near else "results-no-near-design-practical"
     else:
         message_id = "results-no-design-with-even-links" if all_near else "results-no-near-design-with-even-links"
+    among = "found" if searched else "listed"
+    # A near design that has what the first one lacks, and yet follows it, cannot be built.
+    if any(map(is_practical if grade == 1 else is_sound, near)):
+        among = "buildable"
     return compose(
         message_id,
+        among=among,
         angle=f"{MIN_TRANSMISSION_ANGLE:.0f}",
         ratio=f"{MAX_LINK_RATIO:.0f}",
         reach=f"{MAX_REACH:.0f}",
@@ -299,13 +316,13 @@ def _describe_extra_links(problem: LinkageProblem, numbered: Mapping[int, Driven
         number=number,
         links=2 * (count_loops(more) - fewest),
         simple=other,
-        **{name: _write_error(problem, error) for name, error in zip(("error", "other"), errors, strict=True)},
+        **{name: write_error(problem, error) for name, error in zip(("error", "other"), errors, strict=True)},
         angle=f"{simple.metrics.min_transmission_angle:.1f}",
         changed=f"{more.metrics.min_transmission_angle:.1f}",
     )
 
 
-def _write_error(problem: LinkageProblem, error: float) -> str:
+def write_error(problem: LinkageProblem, error: float) -> str:
     """Write an error with its unit; 0 at the level of rounding."""
     scale, unit = problem.error_unit
     return f"{scale * error if error > RESIDUAL_ROUNDING else 0.0:.2g}{unit}"

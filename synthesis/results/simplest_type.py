@@ -60,6 +60,7 @@ def prefer_simplest(
     # Search the simple types first: if one of their designs is good enough, skip the expensive search for sixbars.
     plain = simple(scale_progress(progress, 0.0, 0.4))
     if any(alone(design) for design in select_passing(plain.designs)):
+        progress(1.0, compose("results-verified"))
         return plain
     return joined(plain, sixbars(scale_progress(progress, 0.4, 1.0)))
 

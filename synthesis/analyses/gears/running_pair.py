@@ -10,10 +10,10 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.errors import DimensionError
 from kinematics.gear.flanks import (
@@ -29,12 +29,16 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.gears.gear_pair import MILLIMETRE, RAD_PER_S_PER_RPM
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer, optional_field
+from synthesis.model.dimension import INVERSE_LENGTH
 from synthesis.model.gears.answer import LIMIT_TOLERANCE, apply_tool_contact
 from synthesis.model.gears.mesh_limits import DEFAULT_CUTTER_TEETH, choose_cutter_teeth
 from synthesis.model.gears.request import Addendum, PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gears.strength import LoadedPair, PairStrength, StrengthSpec, describe_strength
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import Flag, Number, PositiveNumber, Statement
+
+PITCH_TOLERANCE = 1e-9
+"""Relative difference of a module and a diametral pitch that are given together, up to which they are the same."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +100,11 @@ class GivenGearPair(Statement):
     type: Literal["gear_pair"]
     teeth: tuple[ToothNumber, ToothNumber]
     module: PositiveNumber = Field(default=1.0, description="Module; for helical teeth in the normal plane.")
+    diametral_pitch: Annotated[PositiveNumber, INVERSE_LENGTH] | None = Field(
+        default=None,
+        description="Teeth per length unit of pitch diameter, in place of the module; for helical teeth in the normal "
+        "plane.",
+    )
     shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
         default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, also for a ring."
     )
@@ -118,6 +127,23 @@ class GivenGearPair(Statement):
         description=f"Teeth of the cutter that shapes a ring; by default {DEFAULT_CUTTER_TEETH}, or half as many as "
         "the ring has if that is less. The cutter has no profile shift, an addendum of 1.25 modules and sharp corners.",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_module(cls, stated: object) -> object:
+        """Take the module from the diametral pitch."""
+        if not isinstance(stated, dict) or stated.get("module") is not None:
+            return stated
+        pitch = stated.get("diametral_pitch")
+        # Other values are refused by the field itself.
+        return {**stated, "module": 1.0 / pitch} if isinstance(pitch, int | float) and pitch > 0.0 else stated
+
+    @model_validator(mode="after")
+    def _check_module(self) -> Self:
+        pitch = self.diametral_pitch
+        if pitch is not None and not math.isclose(self.module * pitch, 1.0, rel_tol=PITCH_TOLERANCE):
+            raise ValueError(compose("analyses-module-and-pitch"))
+        return self
 
     def build_pair(self) -> RunningPair:
         """Build the gears in mesh.

@@ -142,7 +142,7 @@ def compute_forces(problem: CamProblem, program: Program) -> CamForces | None:
     over_speeds = None if top_rpm is None else _find_contact_over_speeds(running, top_rpm, arm)
     # The roller changes walls of a groove at the angles at which the force changes sign.
     changes = np.unique(np.degrees(running.find_reversals()).round(9)).tolist() if groove else None
-    damping = dynamics.damping_ratio
+    damping = load.damping_ratio
     train, warning = compute_train_vibration(problem, running)
     return CamForces(
         preload=load.preload / arm,

@@ -33,7 +33,11 @@ def build_follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
         dynamics.spring_rate * square,
         (dynamics.preload or 0.0) * get_arm_length(problem),
     )
-    return load.with_damping_ratio(dynamics.damping_ratio), convert_rpm(problem.speed_rpm)
+    if dynamics.damping is None:
+        load = load.with_damping_ratio(dynamics.damping_ratio)
+    else:
+        load = replace(load, damping=dynamics.damping * square)
+    return load, convert_rpm(problem.speed_rpm)
 
 
 def convert_rpm(rpm: float) -> float:

@@ -9,6 +9,8 @@ cam-yoke-has-no-overhang = ein Rahmen um zwei Kurvenscheiben ist auf beiden Seit
 # Über das Feld max eines Bereichs mit den Feldern min und max.
 cam-max-not-above-min = muss über min liegen
 cam-spring-range-too-low = die Feder braucht eine Rate von mindestens { $least }, mehr als der angegebene Bereich zulässt
+cam-damping-twice = entweder `damping` oder `damping_ratio` angeben
+cam-damping-needs-given-spring = braucht eine gegebene `spring_rate`; für eine gewählte Feder `damping_ratio` angeben
 cam-train-stiffness-missing = ein Dämpfungsgrad der Kette erfordert `train_stiffness`
 cam-max-rpm-below-speed = muss mindestens `speed_rpm` sein
 cam-walls-need-no-spring = zwischen zwei Wänden ist keine Feder nötig, die das Eingriffsglied andrückt; eine Rate angeben oder closure `force` wählen

@@ -9,6 +9,8 @@ cam-yoke-has-no-overhang = a yoke around two cams is guided on both sides; omit 
 # About the field max of a range with the fields min and max.
 cam-max-not-above-min = must be above min
 cam-spring-range-too-low = the spring needs a rate of at least { $least }, above the given range
+cam-damping-twice = give either `damping` or `damping_ratio`
+cam-damping-needs-given-spring = needs a given `spring_rate`; give `damping_ratio` for a spring that is chosen
 cam-train-stiffness-missing = a train damping ratio needs `train_stiffness`
 cam-max-rpm-below-speed = must be at least `speed_rpm`
 cam-walls-need-no-spring = between two walls no spring is needed to hold the follower; give a rate, or choose closure `force`

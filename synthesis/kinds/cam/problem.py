@@ -216,6 +216,12 @@ class CamProblem(ProblemBase):
             if least > rate.max:
                 detail = compose("cam-spring-range-too-low", least=f"{least:.6g}")
                 contradictions.append(Contradiction("/dynamics/min_frequency_ratio", detail))
+        if dynamics.damping is not None:
+            if dynamics.damping_ratio > 0.0:
+                contradictions.append(Contradiction("/dynamics/damping", compose("cam-damping-twice")))
+            elif free:
+                # The search for a spring keeps the damping ratio, so that the coefficient changes with the rate.
+                contradictions.append(Contradiction("/dynamics/damping", compose("cam-damping-needs-given-spring")))
         if dynamics.train_damping_ratio > 0.0 and dynamics.train_stiffness is None:
             detail = compose("cam-train-stiffness-missing")
             contradictions.append(Contradiction("/dynamics/train_damping_ratio", detail))

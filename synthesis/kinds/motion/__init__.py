@@ -36,6 +36,11 @@ def _verify_with_tolerance(
     return verify_with_tolerance(problem, mechanism)
 
 
+def _request_usable(problem: MotionProblem) -> MotionProblem | None:
+    """Return the statement of a search for sound fourbars and slider-cranks; sixbars would take too long."""
+    return problem if problem.mechanisms is None else problem.two_dyad_problem
+
+
 def _warm_up() -> None:
     """Compile the kernels of the exact methods by solving the first examples: users wait for these short jobs."""
     # The first examples cover three, four and five exact positions; fits are compiled in the background.
@@ -64,6 +69,7 @@ KIND = Kind(
     brief=_is_short,
     nearer=_continue_designs,
     nearly=_verify_with_tolerance,
+    usable=_request_usable,
     is_first_loaded=True,
     list_warm_up_problems=_list_warm_up_problems,
     columns=TableColumns("positions", ("x", "y", "angle")),

@@ -176,11 +176,10 @@ motion-other-translation =
     Die Lagen bilden eine Verschiebung, die keinem Kreis folgt: Jeder Punkt des Körpers durchläuft die gleichen Punkte
     wie P, so dass kein starres Glied ihn führen kann. Es gibt kein Viergelenk mit lauter Drehgelenken.
 motion-rotation-about-point =
-    Alle Lagen sind Drehungen um einen Punkt: Ein einfaches Drehgelenk an dieser Stelle führt den Körper. Es wäre der
-    Gestellpunkt jedes Zweischlags, so dass es kein Viergelenk gibt.
+    Alle Lagen sind Drehungen um einen Punkt. Er wäre der Gestellpunkt jedes Zweischlags, so dass es kein Viergelenk
+    gibt.
 motion-nearly-rotation-about-point =
-    Alle Lagen sind, soweit ihre Stellen reichen, Drehungen um einen Punkt: Ein einfaches Drehgelenk an dieser Stelle
-    führt den Körper.
+    Alle Lagen sind, soweit ihre Stellen reichen, Drehungen um einen Punkt.
 motion-no-pinned-dyad = Kein Zweischlag mit zwei Drehgelenken erfüllt die Lagen und die Vorgaben { $side }.
 motion-no-dyad-of-family =
     Eine Schar von Zweischlägen erfüllt die Lagen und die Vorgaben { $side }, doch in Reichweite wurde keiner gefunden.
@@ -244,6 +243,20 @@ motion-best-transmission-angle = Bester kleinster Übertragungswinkel: { $angle 
 motion-best-error =
     Kleinster mittlerer Restfehler (RMS): { $error } % der Aufgabengröße (Winkel in hundertstel Radiant).
 motion-better-possible = Ein besseres Getriebe ist möglich.
+
+# Einfache Führungen, vor allen anderen Sätzen einer Zusammenfassung.
+
+motion-hinge-suffices =
+    Ein einfaches Drehgelenk genügt: Ein Bolzen bei ({ $x }, { $y }) { $unit } führt den Körper, P im Abstand
+    { $radius } { $unit }, durch { $turn }°.
+motion-slide-suffices =
+    Eine einfache Schiebeführung genügt: Eine Gerade unter { $angle }° durch ({ $x }, { $y }) { $unit } führt den
+    Körper, der sich nicht dreht, über { $travel } { $unit }.
+motion-parallelogram-suffices =
+    Ein Parallelogramm genügt: Zwei parallele Kurbeln von { $length } { $unit } führen den Körper, jede von einem
+    beliebigen Punkt des Körpers zu einem Gestellpunkt, der in der ersten Lage um ({ $x }, { $y }) { $unit } davon
+    entfernt ist.
+motion-guide-misses = Die Lagen werden um höchstens { $distance } { $unit } und { $angle }° verfehlt.
 
 # Zusammenfassungen der Suche nach Viergelenken und Schubkurbeln.
 

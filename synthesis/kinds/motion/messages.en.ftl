@@ -170,10 +170,9 @@ motion-other-translation =
     The positions are a translation, but not along a circle: every point of the body follows the same points as P, so
     no rigid link can guide it. No pin-jointed fourbar exists.
 motion-rotation-about-point =
-    All positions are rotations about one point: a plain pin joint there carries the body. It would be the fixed pivot
-    of every dyad, so no fourbar exists.
+    All positions are rotations about one point. It would be the fixed pivot of every dyad, so no fourbar exists.
 motion-nearly-rotation-about-point =
-    All positions are rotations about one point: a plain pin joint there carries the body, to the digits given.
+    All positions are rotations about one point, to the digits given.
 motion-no-pinned-dyad = No dyad with two pins satisfies the positions and choices of { $side }.
 motion-no-dyad-of-family =
     A family of dyads satisfies the positions and choices of { $side }, but none was found within reach.
@@ -226,6 +225,19 @@ motion-best-transmission-angle = Best minimum transmission angle: { $angle }°.
 motion-best-error =
     Best root-mean-square residual: { $error } % of the task size (angles in hundredths of a radian).
 motion-better-possible = A better linkage may exist.
+
+# Plain guides, before all other sentences of a summary.
+
+motion-hinge-suffices =
+    A plain hinge does this: a pin joint at ({ $x }, { $y }) { $unit } carries the body, with P at a radius of
+    { $radius } { $unit }, through { $turn }°.
+motion-slide-suffices =
+    A plain slide does this: a straight guide at { $angle }° through ({ $x }, { $y }) { $unit } carries the body, which
+    does not turn, over { $travel } { $unit }.
+motion-parallelogram-suffices =
+    A parallelogram does this: two parallel cranks of { $length } { $unit } carry the body, each from a pin anywhere on
+    the body to a fixed pivot at ({ $x }, { $y }) { $unit } from it in the first position.
+motion-guide-misses = It misses the positions by at most { $distance } { $unit } and { $angle }°.
 
 # Summaries of searches for fourbars and slider-cranks.
 

@@ -21,6 +21,7 @@ from synthesis.kinds.motion.statement.mechanism_types import (
     list_unsupported_stephenson_2,
 )
 from synthesis.kinds.motion.statement.positions import MAX_EXACT_POSITIONS, MAX_SIXBAR_POSITIONS, Position, Tolerance
+from synthesis.model.linkage.answer import FourbarMechanism
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.linkage.type_choice import remove_unclassed, select_searched_types
 from synthesis.model.manufacture.request import ManufactureTask, RequiredTargets, list_fixed_coordinates
@@ -284,6 +285,18 @@ class MotionProblem(LinkageProblem):
     def measure_error(self, design: Any) -> float:
         """Return the RMS of the residuals of fitted positions; 0 for positions that are met, also within tolerances."""
         return float(design.metrics.rms_residual) if self.is_least_squares else 0.0
+
+    def classify_design(self, design: Any) -> int:
+        """Return 0 for a sound parallelogram and 1 for others: if the body must not turn, the plain linkage is first.
+
+        Fits without tolerances are compared by their errors instead.
+        """
+        # A local import, because statements are also read where no design is compared.
+        from synthesis.results.practicality import is_sound
+
+        mechanism = design.mechanism
+        plain = isinstance(mechanism, FourbarMechanism) and mechanism.is_parallelogram and is_sound(design)
+        return int(not plain or self.is_least_squares)
 
     @property
     def first_pose(self) -> tuple[complex, float]:

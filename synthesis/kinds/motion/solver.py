@@ -29,6 +29,7 @@ from synthesis.kinds.motion.exact.dyad_pairs import DyadPairs, make_pairs
 from synthesis.kinds.motion.exact.screening import LIMIT_REASONS
 from synthesis.kinds.motion.exact.slider_cranks import merge_sliders, solve_sliders, try_sliders
 from synthesis.kinds.motion.least_squares.solver import solve_least_squares
+from synthesis.kinds.motion.plain_guide import add_plain_guide
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task.positions import MotionTask
 from synthesis.kinds.motion.type_selection import solve_types
@@ -65,8 +66,10 @@ _INPUT_INDEPENDENT_REASONS = {"degenerate", "residual", "cannot_be_driven", "cir
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve a motion-generation problem by the method that its statement selects."""
     if problem.mechanisms is not None:
-        return solve_types(problem, _solve_two_dyads, progress)
-    return _solve_two_dyads(problem, progress)
+        result = solve_types(problem, _solve_two_dyads, progress)
+    else:
+        result = _solve_two_dyads(problem, progress)
+    return add_plain_guide(problem, result)
 
 
 def continue_from_designs(

@@ -47,6 +47,7 @@ def solve_exactly_or_fit(
     first = exact(problem, scale_progress(progress, 0.0, EXACT_PROGRESS_SHARE))
     # Any exact design is preferred to every fit.
     if first.search.accepted:
+        progress(1.0, compose("path-verified"))
         return first
     nearly = problem.model_copy(update={"method": "least_squares"})
     second = fitted(nearly, scale_progress(progress, EXACT_PROGRESS_SHARE, 1.0))

@@ -51,6 +51,9 @@ MAX_EXACT_POINTS = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
 """Maximum number of points that a linkage can meet exactly, in general: its number of dimensions without the gear
 ratio."""
 
+MAX_USABLE_ERROR = 0.02
+"""Maximum error of a sound fit, as a share of the task's size, that precedes exact designs which are not sound."""
+
 MAX_GEAR_TURNS = 60
 """Maximum number of crank turns after which a geared fivebar must repeat, so that its whole motion can be driven."""
 
@@ -218,7 +221,8 @@ class PathProblem(LinkageProblem):
         default="auto",
         description="How the points are met: exactly, with the minimum sum of squared distances, or, by curve_match, "
         "as a whole drawn curve (closed) or stroke. auto: exactly if a linkage can meet that number of points, "
-        "otherwise, or if no linkage does, by least_squares.",
+        "otherwise, or if no linkage does, by least_squares. If none of these linkages is sound, auto also fits sound "
+        "ones, by curve_match on a closed curve.",
     )
     placement_free: list[Literal["position", "rotation", "size"]] = Field(
         default=[],
@@ -345,8 +349,21 @@ class PathProblem(LinkageProblem):
         return self.task_size, f" {self.length_unit}"
 
     def classify_design(self, design: Any) -> int:
-        """Return 0 for a design that was meant to meet its points exactly, 1 for a fit."""
-        return int(design.metrics.curve_distance is not None)
+        """Return 0 for a design that was meant to meet its points exactly, 1 for a fit.
+
+        A sound fit that is near the points precedes exact designs that transmit too badly, unless the method is exact.
+        """
+        # A local import, because statements are also read where no design is compared.
+        from synthesis.results.practicality import is_sound
+
+        exact = design.metrics.curve_distance is None
+        if self.method != "auto" or self.is_fitted:
+            return int(not exact)
+        if not is_sound(design):
+            return 2 if exact else 3
+        if exact:
+            return 0
+        return 1 if self.measure_error(design) <= MAX_USABLE_ERROR else 3
 
     @property
     def is_matched(self) -> bool:

@@ -82,6 +82,8 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
         if any(_is_sufficient(problem, design) for design in select_passing(result.designs)):
             break
     assert result is not None
+    # The types that were not needed leave their shares of the progress.
+    progress(1.0, compose("path-verified"))
     sentences = [result.summary]
     if not problem.is_listed_later:
         sentences.append(describe_best_linkages(problem, result.designs))

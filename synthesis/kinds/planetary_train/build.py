@@ -23,7 +23,7 @@ def build_demands(problem: PlanetaryProblem, arrangement: Arrangement, module: f
     """Build an arrangement's constraints on tooth numbers, in half modules, for a module or for any listed one."""
     listed = problem.module_choices if module is None else [module]
     return Demands(
-        {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
+        {gear.name: problem.compute_tooth_limits(gear.name, gear.internal) for gear in arrangement.gears},
         problem.planets,
         problem.spacing == "equal",
         # Use the most favourable modules of the list: the finest for size, the coarsest for clearance.

@@ -106,13 +106,17 @@ class ParetoPlanetaryTrain(Answer):
 
 
 class PlanetarySearch(Search):
-    """The search of a finite set of trains; with `strength`, `complete` is false if better trains may be unjudged."""
+    """The search of a finite set of trains.
 
-    judged: int | None = optional_field("With `strength`: number of trains judged, in the order of the ranking.")
+    With `strength` or an efficiency, `complete` is false if better trains may be unjudged.
+    """
+
+    judged: int | None = optional_field(
+        "With `strength` or an efficiency: number of trains judged, in the order of the ranking."
+    )
     every_judged: bool | None = optional_field(
         "Whether all trains within the tolerance were judged, so that `ties` and `pareto` refer to all trains that "
-        "carry "
-        "the power; otherwise they refer to the judged ones only."
+        "carry the power; otherwise they refer to the judged ones only."
     )
 
 

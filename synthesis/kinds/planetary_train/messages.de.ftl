@@ -5,7 +5,9 @@ planetary_train-member-repeats = { $member } hat bereits eine andere Aufgabe
 planetary_train-no-arrangement-fits = keine Bauart hat alle angegebenen Glieder
 planetary_train-max-below-min = darf nicht kleiner als min sein
 planetary_train-unknown-gear = erwartet wird eines von { $gears }
-planetary_train-size-needs-tolerance = die Rangfolge nach Größe braucht eine Toleranz der Übersetzung
+planetary_train-order-needs-tolerance = Die Reihung nach { $order } braucht eine Toleranz der Übersetzung
+planetary_train-ring-diameter-needs-module = braucht einen einzigen Modul; modules weglassen
+planetary_train-efficiency-without-strength = wird zusammen mit strength nicht unterstützt
 planetary_train-too-many-combinations =
     { $arrangement } hat { $combinations } Kombinationen von Zähnezahlen, mehr als die Grenze von { $limit }; die
     Grenzen enger setzen oder Grenzen für einzelne Räder angeben
@@ -67,6 +69,8 @@ planetary_train-none-turns-opposite =
 planetary_train-none-within-tolerance =
     Kein Getriebe liegt innerhalb der Toleranz: { $searched }. Die nächste Übersetzung ist { $ratio }, mit
     { $arrangement } ({ $teeth }; { $input } nach { $output }, { $fixed } fest) und einem Fehler von { $error } %.
+planetary_train-none-efficient = Keiner der { $count } Sätze innerhalb der Toleranz hat einen Wirkungsgrad von { $efficiency }; der größte ist { $greatest }.
+planetary_train-none-judged-efficient = Keiner der { $count } beurteilten Sätze hat einen Wirkungsgrad von { $efficiency }; der größte ist { $greatest }. Weitere liegen innerhalb der Toleranz.
 planetary_train-combinations-searched =
     { $count ->
         [one] { $count } Kombination von Zähnezahlen und Gliedern untersucht

@@ -6,7 +6,9 @@ planetary_train-member-repeats = { $member } already has another role
 planetary_train-no-arrangement-fits = no arrangement has all the given members
 planetary_train-max-below-min = must not be below min
 planetary_train-unknown-gear = expected one of { $gears }
-planetary_train-size-needs-tolerance = ranking by size needs a tolerance for the ratio
+planetary_train-order-needs-tolerance = ranking by { $order } needs a tolerance for the ratio
+planetary_train-ring-diameter-needs-module = needs one module; omit modules
+planetary_train-efficiency-without-strength = is not supported together with strength
 # $arrangement: as in the problem, such as two_stage; $combinations, $limit: rounded numbers such as 2e+08
 planetary_train-too-many-combinations =
     { $arrangement } has { $combinations } combinations of teeth, more than the limit of { $limit }; narrow the limits,
@@ -59,6 +61,8 @@ planetary_train-none-turns-opposite =
 planetary_train-none-within-tolerance =
     No train is within the tolerance: { $searched }. The nearest ratio is { $ratio }, by { $arrangement } ({ $teeth };
     { $input } to { $output }, { $fixed } fixed), with an error of { $error } %.
+planetary_train-none-efficient = None of the { $count } trains within the tolerance has an efficiency of { $efficiency }; the greatest is { $greatest }.
+planetary_train-none-judged-efficient = None of the { $count } trains judged has an efficiency of { $efficiency }; the greatest is { $greatest }. More trains are within the tolerance.
 planetary_train-combinations-searched =
     { $count ->
         [one] { $count } combination of tooth numbers and members searched

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Annotated, Literal
 
@@ -21,6 +22,9 @@ MAX_COMBINATIONS = 2 * 10**8
 ENCLOSURE_BITS = 512
 """Bits of precision of an irrational ratio. Two ratios of planetary trains differ by more than 2^-100, so that this
 ranks them like the number itself."""
+
+DIAMETER_SLACK = 1e-12
+"""Relative rounding of the diameter of a ring."""
 
 CLEARANCE_TOLERANCE = 1e-9
 """Clearance in modules that is attributed to rounding: less is contact, and a shortfall by less passes."""
@@ -137,6 +141,12 @@ class PlanetaryProblem(ProblemBase):
     max_size: PositiveLength | None = Field(
         default=None, description="Maximum pitch diameter around the axis, planets included, in the length unit."
     )
+    max_ring_diameter: PositiveLength | None = Field(
+        default=None, description="Maximum pitch diameter of any ring, in the length unit; needs one module."
+    )
+    min_efficiency: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] | None = Field(
+        default=None, description="Minimum efficiency of the train, with `mesh_efficiency`."
+    )
     min_clearance: Annotated[float, LENGTH, Field(strict=True, ge=0.0, le=1e9)] = Field(
         default=0.0, description="Minimum clearance between the tips of gears that do not mesh, in the length unit."
     )
@@ -163,11 +173,24 @@ class PlanetaryProblem(ProblemBase):
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
     )
-    rank_by: Literal["error", "size"] = Field(
+    rank_by: Literal["error", "size", "efficiency"] = Field(
         default="error",
         description="error: smallest error, then smallest size. size: for each size the smallest error within the "
-        "tolerance.",
+        "tolerance. efficiency: greatest efficiency within the tolerance, then smallest error.",
     )
+
+    @property
+    def judges_efficiency(self) -> bool:
+        """Whether trains are selected or ranked by their efficiency."""
+        return self.min_efficiency is not None or self.rank_by == "efficiency"
+
+    def compute_tooth_limits(self, gear: str, internal: bool) -> tuple[int, int]:
+        """Return the fewest and most teeth of a gear, with the limit on the diameter of rings."""
+        low, high = self.teeth.limits(gear, internal)
+        if internal and self.max_ring_diameter is not None:
+            # A diameter that rounding makes a little smaller still permits its number of teeth.
+            high = min(high, math.floor(self.max_ring_diameter / self.module * (1.0 + DIAMETER_SLACK)))
+        return low, high
 
     @property
     def target(self) -> Fraction:
@@ -264,8 +287,15 @@ class PlanetaryProblem(ProblemBase):
             elif own.min > own.max:
                 detail = compose("planetary_train-max-below-min")
                 contradictions.append(Contradiction(f"/teeth/gears/{gear}/max", detail))
-        if self.rank_by == "size" and self.tolerance is None:
-            contradictions.append(Contradiction("/tolerance", compose("planetary_train-size-needs-tolerance")))
+        if self.rank_by != "error" and self.tolerance is None:
+            detail = compose("planetary_train-order-needs-tolerance", order=self.rank_by)
+            contradictions.append(Contradiction("/tolerance", detail))
+        if self.max_ring_diameter is not None and self.modules is not None:
+            detail = compose("planetary_train-ring-diameter-needs-module")
+            contradictions.append(Contradiction("/max_ring_diameter", detail))
+        if self.judges_efficiency and self.strength is not None:
+            path = "/rank_by" if self.min_efficiency is None else "/min_efficiency"
+            contradictions.append(Contradiction(path, compose("planetary_train-efficiency-without-strength")))
         return contradictions
 
     def _check_extent(self) -> list[Contradiction]:
@@ -274,7 +304,7 @@ class PlanetaryProblem(ProblemBase):
             for members in row.planet_sets:
                 count = 1
                 for gear in row.list_independent_gears(members):
-                    low, high = self.teeth.limits(gear, row.places[gear].internal)
+                    low, high = self.compute_tooth_limits(gear, row.places[gear].internal)
                     count *= max(0, high - low + 1)
                 if count > MAX_COMBINATIONS:
                     detail = compose(

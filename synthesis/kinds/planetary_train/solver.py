@@ -20,6 +20,7 @@ from synthesis.kinds.planetary_train.design import (
     PlanetaryResult,
     PlanetarySearch,
 )
+from synthesis.kinds.planetary_train.efficiency import EfficientTrains, find_efficient_trains
 from synthesis.kinds.planetary_train.nearest import (
     Candidate,
     NearestTrains,
@@ -90,6 +91,8 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
         progress(1.0, compose("planetary_train-judging-strength"))
         return ranking.build_carrying_result(find_carrying_trains(problem, problem.strength, listing))
     progress(1.0, compose("planetary_train-done"))
+    if problem.judges_efficiency:
+        return ranking.build_efficient_result(find_efficient_trains(problem, listing))
     return ranking.build_result()
 
 
@@ -149,6 +152,33 @@ class _Ranking:
                 _build_pareto(problem, candidate, candidate.size * problem.module)
                 for candidate in front
                 if _is_verified(problem, _build_mechanism(problem, candidate))
+            ],
+        )
+
+    def build_efficient_result(self, found: EfficientTrains) -> PlanetaryResult:
+        """Build the verified answer for trains that are judged by their efficiency."""
+        problem, sifting = self._problem, self._sifting
+        sifting.reject("efficiency", found.failed)
+        made = [_build_mechanism(problem, one) for one in found.best]
+        sifting.verify_best(made, self._sound - found.failed, partial(_build_design, problem))
+        search = sifting.build_search("exhaustive", complete=found.proven and not sifting.failed)
+        ties = sum(one.error == found.best[0].error for one in found.best)
+        summary = self._write_summary(ties if problem.rank_by == "error" else 0)
+        if found.failed and not found.best:
+            summary = compose(
+                "planetary_train-none-efficient" if found.every else "planetary_train-none-judged-efficient",
+                count=found.judged,
+                efficiency=f"{problem.min_efficiency:g}",
+                greatest=f"{found.greatest:.4g}",
+            )
+        return PlanetaryResult(
+            designs=sifting.select_designs(list),
+            search=PlanetarySearch(**dict(search), judged=found.judged, every_judged=found.every),
+            summary=summary,
+            ties=ties,
+            pareto=[
+                _build_pareto(problem, one, one.size * problem.module)
+                for one in select_pareto(sorted(found.best, key=lambda one: (one.size, one)), lambda one: one.error)
             ],
         )
 

@@ -18,10 +18,10 @@ from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import Gap, compute_pin_distances, has_fit_at, is_coaxial, measure_gaps
 from kinematics.gear.cut_space import measure_tip_depth
 from kinematics.gear.planetary import compute_speed_ratio, solve_speeds
-from kinematics.gear.power import solve_power_flow
+from kinematics.gear.power import PowerFlow, solve_power_flow
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechanism, PlanetaryMetrics
-from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.planetary_train.problem import DIAMETER_SLACK, PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.dynamics.request import METRES_PER_UNIT
@@ -57,6 +57,14 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
         if problem.max_size is not None:
             size = compute_size(mechanism) * mechanism.module
             checks.append(check_maximum("size", size, problem.max_size, LENGTH, SIZE_SLACK))
+        rings = [mechanism.teeth[gear.name] for gear in arrangement.gears if gear.internal]
+        if problem.max_ring_diameter is not None and rings:
+            diameter = max(rings) * mechanism.module
+            checks.append(check_maximum("ring_diameter", diameter, problem.max_ring_diameter, LENGTH, DIAMETER_SLACK))
+        if problem.min_efficiency is not None:
+            roles = (mechanism.input, mechanism.output, mechanism.fixed)
+            efficiency = solve_efficiency(problem, arrangement, mechanism.teeth, roles)
+            checks.append(check_minimum("efficiency", efficiency, problem.min_efficiency))
     return Verification.from_checks(checks)
 
 
@@ -122,20 +130,34 @@ def compute_size(mechanism: PlanetaryMechanism) -> float:
     return max(reach)
 
 
+def solve_flow(
+    problem: PlanetaryProblem, arrangement: Arrangement, teeth: Mapping[str, int], roles: tuple[str, str, str]
+) -> PowerFlow:
+    """Solve the power flow of a train, from input to output with the third member fixed, for unit input speed."""
+    train = arrangement.build_train(dict(teeth))
+    driving, _, fixed = roles
+    turning = solve_speeds(train, {fixed: 0, driving: 1}).values
+    known = {body: speed for body, speed in turning.items() if speed is not None}
+    flow = solve_power_flow(train, known, roles, {driving: 1}, parse_decimal(problem.mesh_efficiency))
+    assert flow is not None
+    return flow
+
+
+def solve_efficiency(
+    problem: PlanetaryProblem, arrangement: Arrangement, teeth: Mapping[str, int], roles: tuple[str, str, str]
+) -> float:
+    """Return the efficiency of a train; 0 if it is self-locking."""
+    return float(solve_flow(problem, arrangement, teeth, roles).efficiency or 0)
+
+
 def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryMetrics:
     """Measure the properties of a coaxial train that its checks do not cover."""
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     train = arrangement.build_train(mechanism.teeth)
     turning = solve_speeds(train, {mechanism.fixed: 0, mechanism.input: 1}).values
     known = {body: speed for body, speed in turning.items() if speed is not None}
-    flow = solve_power_flow(
-        train,
-        known,
-        (mechanism.input, mechanism.output, mechanism.fixed),
-        {mechanism.input: 1},
-        parse_decimal(problem.mesh_efficiency),
-    )
-    assert flow is not None
+    members = mechanism.input, mechanism.output, mechanism.fixed
+    flow = solve_flow(problem, arrangement, mechanism.teeth, members)
     ratio = compute_exact_ratio(mechanism)
     assert ratio is not None
     rooms = _measure_gaps(mechanism, arrangement)
@@ -189,7 +211,7 @@ def _check_limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arra
     within = all(
         low <= mechanism.teeth[gear.name] <= high
         for gear in arrangement.gears
-        for low, high in [problem.teeth.limits(gear.name, gear.internal)]
+        for low, high in [problem.compute_tooth_limits(gear.name, gear.internal)]
     )
     as_asked = mechanism.planets == problem.planets and mechanism.module in problem.module_choices
     return Check(name="tooth_limits", passed=within and as_asked)

@@ -22,8 +22,9 @@ SERIES_FIELDS = {*ProblemBase.model_fields, "ratio", "tolerance", "rank_by", "si
 """Fields of a problem that no unit has: the ratio and ranking of the series, and a power, which reaches a unit through
 the units before it."""
 
-POWER_FIELDS = {"planetary_train": {"modules"}}
-"""Fields of a kind that its units lack, since only a power decides between their values."""
+POWER_FIELDS = {"planetary_train": {"modules", "min_efficiency"}}
+"""Fields of a kind that its units lack: only a power decides between modules, and a unit is not judged by its own
+efficiency."""
 
 DEFAULT_STAGE_COUNT = 1
 """Default number of stages of a unit of ordinary gears: further stages are further units."""
@@ -129,7 +130,7 @@ def estimate_train_count(unit: Unit, length_unit: str) -> int:
         one = len(problem.list_roles(row))
         for planets in row.planet_sets:
             for gear in row.list_independent_gears(planets):
-                low, high = problem.teeth.limits(gear, row.places[gear].internal)
+                low, high = problem.compute_tooth_limits(gear, row.places[gear].internal)
                 one *= max(0, high - low + 1)
         total += one
     return total

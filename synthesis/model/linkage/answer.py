@@ -14,6 +14,9 @@ from synthesis.model.dimension import Angle, Length
 from synthesis.model.dynamics.peak_forces import DesignForces
 from synthesis.model.manufacture.answer import MANUFACTURE_FIELD, ManufactureReport, Yield
 
+PARALLEL_TOLERANCE = 1e-6
+"""Difference of two opposite links, as a share of their length, below which they count as equal and parallel."""
+
 _BODY_ANGLE_FIELD = optional_field(
     "Absolute angle of the body's line at the first target, degrees; left out if it equals the requested angle exactly."
 )
@@ -87,6 +90,12 @@ class FourbarMechanism(Answer):
     reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
     reference_body_angle: Angle | None = _BODY_ANGLE_FIELD
     skeleton: Skeleton
+
+    @property
+    def is_parallelogram(self) -> bool:
+        """Whether opposite links are equal and parallel, so that the coupler does not turn."""
+        o2, a, b, o4 = (complex(*self.skeleton.joints[name]) for name in ("O2", "A", "B", "O4"))
+        return abs((b - a) - (o4 - o2)) <= PARALLEL_TOLERANCE * abs(o4 - o2)
 
 
 class Line(Answer):

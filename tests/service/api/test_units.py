@@ -44,7 +44,7 @@ PURE = {
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
     "ExactDesign": {"rms_residual"},
-    "FollowerDynamics": {"damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
+    "FollowerDynamics": {"damping", "damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
     "ForceCaps": {"shaking_force", "shaking_moment", "drive", "joint_forces"},  # over what they were
     "MaxSlenderness": {"max"},  # radius over thickness
     "Fluctuation": {"first_order_coefficient"},

@@ -170,6 +170,7 @@ CAM_ROWS: dict[str, Any] = {
     "dynamics.max_rpm": Row(800.0, SPRUNG),
     "dynamics.min_frequency_ratio": Row(3.0, {**SPRUNG, "dynamics.spring_rate": "free"}),
     "dynamics.damping_ratio": Row(0.2, LOADED),
+    "dynamics.damping": Row(0.5, LOADED),
     "dynamics.preload": Row(120.0, LOADED),
     "dynamics.least_force": Row(5.0, {"dynamics": {"mass": 0.5, "spring_rate": 20.0}, "speed_rpm": 200.0}),
     "continuity": Row("jerk", {"segments": RFD}),

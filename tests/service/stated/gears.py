@@ -178,6 +178,8 @@ PLANETARY_ROWS: dict[str, Any] = {
     "pressure_angle": 25.0,
     "tolerance": 0.5,
     "max_size": 1e6,
+    "max_ring_diameter": 1e6,
+    "min_efficiency": 0.1,
     "min_clearance": 8.0,
     "min_contact_ratio": 1.1,
     "fillets": "refuse",

@@ -129,3 +129,16 @@ def test_what_cannot_be_is_refused_with_its_field():
     assert caught.value.path == "/helix_angle"
     request = parse_request({"mechanism": {"type": "bevel_pair", "teeth": [40, 20], "module": 2.0}})
     assert [path for path, _ in request.find_errors()] == ["/mechanism/teeth"]
+
+
+def test_a_diametral_pitch_replaces_the_module():
+    by_module, by_pitch = (
+        analysed("gear_pair", teeth=[20, 50], face_width=1.0, **size)
+        for size in ({"module": 1.0 / 8.0}, {"diametral_pitch": 8.0})
+    )
+    assert by_pitch == by_module
+    assert by_pitch["standard_distance"] == pytest.approx(70.0 / 16.0)
+    # Both may be posted again together, but must agree.
+    analysed("gear_pair", teeth=[20, 50], module=0.125, diametral_pitch=8.0)
+    with pytest.raises(ValueError, match="either module or diametral_pitch"):
+        analysed("gear_pair", teeth=[20, 50], module=2.0, diametral_pitch=8.0)

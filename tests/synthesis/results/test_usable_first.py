@@ -115,8 +115,8 @@ def test_what_the_first_design_lacks_is_told_where_it_is_not_among_the_nearest()
     found, remark = order([made(29.0, 6.5, 7.6, error=1.0), made(40.0, 4.5, 2.0, error=5.0)])
     assert found == [0, 1]
     assert remark == (
-        "No design within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of 10 "
-        "or less."
+        "No design found within 2 times the smallest error has a transmission angle of 30° or more and a link ratio of "
+        "10 or less."
     )
 
 

@@ -123,6 +123,10 @@ class FollowerDynamics(Statement):
         "chosen, of all that hold the follower to the cam at every speed up to `max_rpm`.",
     )
     damping_ratio: NonNegative = Field(default=0.0, description="Fraction of critical damping of mass and spring.")
+    damping: NonNegative | None = Field(
+        default=None,
+        description="Damping force over velocity, in the units of force, length and seconds; replaces `damping_ratio`.",
+    )
     preload: Annotated[NonNegative, FORCE] | None = Field(
         default=None, description="Spring force at zero displacement. Default: the smallest sufficient one."
     )

@@ -39,25 +39,38 @@ class ProgramStatement:
     displacement_unit: float
 
     def convert_conditions(self, segment: Polynomial | Move) -> Conditions:
-        """Return a segment's conditions in radians and the solver's displacements."""
+        """Return a segment's conditions in radians and the solver's displacements.
+
+        A polynomial without a displacement at its start has that at which the previous segment ends.
+        """
+        start = None
+        if isinstance(segment, Polynomial) and not _has_start(segment):
+            position = next((k for k, other in enumerate(self.segments) if other is segment), 0)
+            start = self.heights()[position - 1][1] if position else None
+        return self._convert_conditions(segment, start)
+
+    def _convert_conditions(self, segment: Polynomial | Move, start: float | None) -> Conditions:
         unit = self.displacement_unit
-        return [
+        stated = [
             (math.radians(condition.angle), order, value * (unit if order == 0 else 1.0))
             for condition in segment.conditions
             for order, value in condition.values()
         ]
+        return stated if start is None else [(0.0, 0, start), *stated]
 
     def heights(self) -> list[tuple[float, float]]:
         """Return the displacement at start and end of each segment, in the solver's unit; the first begins at zero.
 
-        A polynomial begins and ends at the values that its conditions determine.
+        A polynomial begins and ends at the values that its conditions determine, or where the previous segment ends.
         """
-        heights = []
+        heights: list[tuple[float, float]] = []
         at = 0.0
         for segment in self.segments:
             end = at
             if isinstance(segment, Polynomial):
-                ends = compute_polynomial_ends(math.radians(segment.angle), self.convert_conditions(segment))
+                start = at if heights and not _has_start(segment) else None
+                conditions = self._convert_conditions(segment, start)
+                ends = compute_polynomial_ends(math.radians(segment.angle), conditions)
                 at, end = (at, at) if ends is None else (ends[0][0], ends[1][0])
             elif isinstance(segment, ConstantVelocity):
                 end = at + segment.lift * self.displacement_unit
@@ -82,6 +95,10 @@ class ProgramStatement:
         """Distance from the lowest to the highest displacement, in the solver's unit."""
         ranges = self._compute_ranges()
         return max(high for _, high in ranges) - min(low for low, _ in ranges)
+
+    def _travels(self) -> bool:
+        """Return whether the program leaves its first displacement by more than rounding."""
+        return self.travel > JUMP_TOLERANCE * max(abs(end) for pair in self.heights() for end in pair)
 
     def list_laws(self) -> list[str]:
         """Return the law of each segment, or its motion if it has no law.
@@ -153,7 +170,9 @@ class ProgramStatement:
                 conditions = self.convert_conditions(segment)
                 if compute_polynomial_ends(math.radians(segment.angle), conditions) is None:
                     contradictions.append(Contradiction(f"{where}/conditions", compose("cam-conditions-dependent")))
-        if not contradictions and not any(_has_motion(segment) for segment in self.segments):
+        # A polynomial may move from the height at which it continues to its only stated one.
+        moves = any(_has_motion(segment) for segment in self.segments) or self._travels()
+        if not contradictions and not moves:
             contradictions.append(Contradiction("/segments", compose("cam-follower-rests")))
         return contradictions
 
@@ -243,6 +262,11 @@ def _find_band_errors(where: str, band: DisplacementBand, angle: float) -> list[
     if band.lower is not None and band.upper is not None and band.lower > band.upper:
         return [Contradiction(f"{where}/upper", compose("cam-band-empty"))]
     return []
+
+
+def _has_start(segment: Polynomial) -> bool:
+    """Return whether a polynomial states the displacement at its start."""
+    return any(condition.angle == 0.0 and condition.s is not None for condition in segment.conditions)
 
 
 def _has_motion(segment: Segment) -> bool:

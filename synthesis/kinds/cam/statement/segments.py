@@ -102,7 +102,10 @@ class ConstantVelocity(Statement):
 
 
 class Polynomial(Statement):
-    """The polynomial of lowest degree through conditions anywhere in the segment."""
+    """The polynomial of lowest degree through conditions anywhere in the segment.
+
+    Without a displacement at its start it continues from the end of the previous segment.
+    """
 
     motion: Literal["polynomial"]
     angle: Span

@@ -324,3 +324,76 @@ def test_a_face_has_a_base_circle_that_is_no_point(follower):
     (design,) = solve(parse_problem(statement), lambda fraction, message: None).designs
     travel = math.radians(10.0) * 120.0 if follower == "oscillating_flat" else 10.0
     assert design.mechanism.base_radius == pytest.approx(1e-3 * travel, rel=1e-3)
+
+
+def critical_path(*, start: float | None = None) -> dict:
+    """Norton, Example 8-9: 10 in/s for half of a turn of one second, and back from where the rise ends."""
+    rate = 5.0 / math.pi
+    back = [
+        {"angle": 0, "v": rate, "a": 0} | ({} if start is None else {"s": start}),
+        {"angle": 150, "s": 0, "v": 0, "a": 0},
+    ]
+    return {
+        "kind": "cam",
+        "length_unit": "in",
+        "segments": [
+            {
+                "motion": "polynomial",
+                "angle": 30,
+                "conditions": [{"angle": 0, "s": 0, "v": 0, "a": 0}, {"angle": 30, "v": rate, "a": 0}],
+            },
+            {"motion": "constant_velocity", "angle": 180, "lift": 5},
+            {"motion": "polynomial", "angle": 150, "conditions": back},
+        ],
+        "follower": {"type": "translating_roller", "roller_radius": 0.25},
+    }
+
+
+def test_a_polynomial_continues_from_the_previous_segment():
+    open_start = parse_problem(critical_path())
+    assert open_start.find_contradictions() == []
+    # The acceleration covers half of what constant velocity would: 5/12 in. The textbook rounds it to 5.416667.
+    assert open_start.program.heights()[2] == pytest.approx((5.0 + 5.0 / 12.0, 0.0), abs=1e-12)
+    typed = parse_problem(critical_path(start=65.0 / 12.0))
+    results = [solve(problem).designs[0].metrics for problem in (open_start, typed)]
+    assert results[0].peak_acceleration == pytest.approx(results[1].peak_acceleration, rel=1e-9)
+    assert results[0].lift == pytest.approx(results[1].lift, rel=1e-9)
+    # A wrong height is still refused, where the segment begins.
+    faults = parse_problem(critical_path(start=5.0)).find_contradictions()
+    assert [fault.path for fault in faults] == ["/segments/2"]
+
+
+def test_a_polynomial_with_only_its_end_stated_moves():
+    statement = critical_path()
+    statement["segments"] = [
+        {"motion": "dwell", "angle": 90},
+        {"motion": "polynomial", "angle": 90, "conditions": [{"angle": 0, "v": 0}, {"angle": 90, "s": 1, "v": 0}]},
+        {"motion": "dwell", "angle": 90},
+        {"motion": "polynomial", "angle": 90, "conditions": [{"angle": 0, "v": 0}, {"angle": 90, "s": 0, "v": 0}]},
+    ]
+    statement["accept_discontinuity"] = True
+    problem = parse_problem(statement)
+    assert problem.find_contradictions() == []
+    heights = [height for pair in problem.program.heights() for height in pair]
+    assert heights == pytest.approx([0, 0, 0, 1, 1, 1, 1, 0], abs=1e-12)
+
+
+def test_a_damping_coefficient_is_that_of_its_ratio():
+    """c = 2 ζ √(k m), with the mass in N s²/mm."""
+    loaded = {"mass": 0.5, "spring_rate": 20.0, "preload": 100.0}
+    coefficient = 2.0 * 0.2 * math.sqrt(20.0 * 0.5e-3)
+    by_ratio, by_coefficient = (
+        solve(stated(dynamics=loaded | damping, speed_rpm=200.0)).designs[0].metrics.forces
+        for damping in ({"damping_ratio": 0.2}, {"damping": coefficient})
+    )
+    for name in ("min_contact_force", "max_contact_force", "max_torque", "damped_frequency"):
+        assert getattr(by_coefficient, name) == pytest.approx(getattr(by_ratio, name), rel=1e-12)
+    undamped = solve(stated(dynamics=loaded, speed_rpm=200.0)).designs[0].metrics.forces
+    assert undamped.max_torque != pytest.approx(by_ratio.max_torque, rel=1e-3)
+
+
+@pytest.mark.parametrize("more", [{"damping_ratio": 0.1}, {"spring_rate": "free"}])
+def test_a_damping_coefficient_needs_a_given_spring_and_no_ratio(more):
+    dynamics = {"mass": 0.5, "spring_rate": 20.0, "damping": 0.5} | more
+    faults = stated(dynamics=dynamics, speed_rpm=200.0).find_contradictions()
+    assert "/dynamics/damping" in [fault.path for fault in faults]

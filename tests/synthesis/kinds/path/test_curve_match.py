@@ -330,8 +330,9 @@ def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}
     result = matched(case["curve"], True, fixed_pivots=pivots)
-    best = result.designs[0].metrics
-    assert math.hypot(best.rms_distance, best.excursion) < 7.5, "between the points too"
+    # A sound linkage may stand before the nearest one.
+    least = min(math.hypot(design.metrics.rms_distance, design.metrics.excursion) for design in result.designs)
+    assert least < 7.5, "between the points too"
     for design in result.designs:
         assert design.verification.passed
         assert np.allclose(design.mechanism.fixed_pivots.input, pivots["input"], atol=1e-6)

@@ -480,3 +480,72 @@ def test_self_locking_and_wasteful_trains_are_told() -> None:
     ).designs[0].metrics  # fmt: skip
     assert slow.self_locking
     assert slow.efficiency == 0.0
+
+
+WOLFROM: dict[str, Any] = {
+    "ratio": 20,
+    "arrangement": "wolfrom",
+    "teeth": {"min": 17, "max": 40, "ring_max": 90},
+    "tolerance": 0.02,
+}
+
+
+@pytest.fixture(scope="module")
+def every() -> PlanetaryResult:
+    """All trains within the tolerance."""
+    result = answer(**WOLFROM, max_designs=100)
+    assert len(result.designs) == 49
+    return result
+
+
+class TestEfficiency:
+    """Compared with the efficiencies of all 49 trains within the tolerance, listed without regard to them."""
+
+    def test_the_order_is_that_of_all_trains(self, every: PlanetaryResult) -> None:
+        efficiencies = sorted((design.metrics.efficiency for design in every.designs), reverse=True)
+        found = answer(**WOLFROM, rank_by="efficiency", max_designs=10)
+        assert [design.metrics.efficiency for design in found.designs] == efficiencies[:10]
+        # The nearest trains, in the default order, are not the most efficient ones.
+        assert every.designs[0].metrics.efficiency < efficiencies[9]
+        assert found.search.judged == 49
+        assert found.search.every_judged
+
+    def test_a_limit_keeps_the_order(self, every: PlanetaryResult) -> None:
+        enough = [design.mechanism for design in every.designs if design.metrics.efficiency >= 0.92]
+        found = answer(**WOLFROM, min_efficiency=0.92, max_designs=100)
+        assert [design.mechanism for design in found.designs] == enough
+        assert found.search.rejected["efficiency"] == 49 - len(enough)
+        for design in found.designs:
+            check = next(check for check in design.verification.checks if check.name == "efficiency")
+            assert check.value == design.metrics.efficiency
+
+    def test_by_size_each_size_has_its_nearest_train(self, every: PlanetaryResult) -> None:
+        best: dict[float, tuple[float, PlanetaryMechanism]] = {}
+        for design in every.designs:
+            if design.metrics.efficiency >= 0.92:
+                best.setdefault(design.metrics.size, (abs(design.metrics.error), design.mechanism))
+        found = answer(**WOLFROM, min_efficiency=0.92, rank_by="size", max_designs=100)
+        assert [design.mechanism for design in found.designs] == [best[size][1] for size in sorted(best)]
+
+    def test_an_impossible_efficiency_names_the_greatest(self, every: PlanetaryResult) -> None:
+        greatest = max(design.metrics.efficiency for design in every.designs)
+        found = answer(**WOLFROM, min_efficiency=0.999)
+        assert found.designs == []
+        assert f"the greatest is {greatest:.4g}" in found.summary
+
+    def test_a_broken_train_does_not_pass(self, every: PlanetaryResult) -> None:
+        mechanism = every.designs[0].mechanism
+        failures = verify(problem_of(**WOLFROM, min_efficiency=0.93), mechanism).failures
+        assert [check.name for check in failures] == ["efficiency"]
+
+
+def test_the_diameter_of_rings_is_limited(every: PlanetaryResult) -> None:
+    small = [
+        design.mechanism
+        for design in every.designs
+        if max(design.mechanism.teeth[ring] for ring in ("ring_1", "ring_2")) * 0.5 <= 36.0
+    ]
+    found = answer(**WOLFROM, module=0.5, max_ring_diameter=36.0, max_designs=100)
+    assert [design.mechanism.teeth for design in found.designs] == [mechanism.teeth for mechanism in small]
+    failures = verify(problem_of(**WOLFROM, max_ring_diameter=70.0), every.designs[0].mechanism).failures
+    assert {check.name for check in failures} == {"ring_diameter", "tooth_limits"}
