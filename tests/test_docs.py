@@ -8,12 +8,14 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from synthesis.analyses import parse_request
+from synthesis.dispatch import solve
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
-from synthesis.registry import parse_problem
+from synthesis.registry import KINDS, parse_problem
 from tests.support.loops import check_each
 from tests.support.sixbars.names import WRONG_NAME
 
@@ -30,8 +32,8 @@ LINK = re.compile(r"\]\((?!https?://|mailto:)([^)#\s]*)(?:#([^)\s]+))?[^)]*\)")
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
-LAST = re.compile(r"(?<![,\[{])\n(?=\")")
-"""Where a field ends and the next begins without a comma between them, in a part of a statement."""
+ANALYSIS = "analysis"
+"""What a block states that is a request for an analysis, in place of a kind."""
 
 
 @pytest.mark.parametrize(("page", "least"), [("reference/python.md", 10), ("start/first-answer.md", 8)])
@@ -53,27 +55,59 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
 
 
-def test_every_statement_on_a_page_is_one_that_the_service_takes() -> None:
-    kinds, analyses, parts = set(), 0, 0
+def parse_request_body(body: dict[str, Any]) -> str:
+    """Parse the body of a request as the service does; return the kind of its problem, or that it is an analysis."""
+    if "mechanism" in body:
+        request = parse_request(body)
+        assert request.find_errors() == []
+        return ANALYSIS
+    # A body without `problem` is refused by `POST /v1/jobs`.
+    problem = parse_problem(body["problem"])
+    problem.require_consistent()
+    return problem.kind
+
+
+def test_every_block_of_json_can_be_posted_as_it_stands() -> None:
+    """Answers are blocks of another language, ``jsonc``."""
+    stated = [parse_request_body(json.loads(code)) for _, code in blocks("json")]
+    assert len(set(stated)) >= 19
+    assert stated.count(ANALYSIS) > 11
+    for _, code in blocks("jsonc"):
+        assert not {"problem", "mechanism", "kind"} & set(json.loads(code))
+
+
+MACHINES = ROOT / "docs" / "tasks" / "by-machine.md"
+
+TRADE_WORDS = (
+    "hinge", "wiper", "gripper", "press", "excavator", "landing gear", "knee", "cam follower", "steering", "ratchet",
+    "winch", "rotor", "flywheel", "lathe", "clock", "shaper", "stirrer", "door", "tray",
+)  # fmt: skip
+"""Words with which somebody looks for a mechanism; they must lead to a request."""
+
+
+def test_words_of_the_trade_lead_to_a_complete_request() -> None:
+    text = MACHINES.read_text("utf-8")
+    rows = re.findall(r"^\| ([^|]+) \| \[([^\]]+)\]\(#([\w-]+)\) \|$", text, re.MULTILINE)
+    assert [word.lower() for word, _, _ in rows] == sorted(word.lower() for word, _, _ in rows)
+    words = " ".join(word for word, _, _ in rows)
+    assert [word for word in TRADE_WORDS if word not in words] == []
+    sections = dict(re.findall(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL))
+    # Every title in the table has a section with one request, and every section is in the table.
+    assert {title for _, title, _ in rows} == set(sections)
+    kinds = []
+    for title, section in sections.items():
+        (body,) = (code for language, code in BLOCK.findall(section) if language == "json")
+        kinds.append(parse_request_body(json.loads(body)))
+        assert LINK.search(section), title
+    assert set(kinds) == set(KINDS)
+
+
+@pytest.mark.slow
+def test_requests_of_machines_are_answered_with_designs() -> None:
     for page, code in blocks("json"):
-        try:
-            stated = json.loads(code)
-        except json.JSONDecodeError:  # fields of a statement, side by side
-            assert json.loads(f"{{{LAST.sub(',', code.strip())}}}"), page
-            parts += 1
-            continue
-        if "problem" in stated or "kind" in stated:
-            problem = parse_problem(stated.get("problem", stated))
-            problem.require_consistent()
-            kinds.add(problem.kind)
-        elif "mechanism" in stated:
-            parse_request(stated)
-            analyses += 1
-        else:
-            parts += 1
-    assert len(kinds) >= 17
-    assert analyses > 8
-    assert 5 * parts < len(blocks("json"))
+        if page == MACHINES:
+            result = solve(parse_problem(json.loads(code)["problem"]))
+            assert any(design.verification.passed for design in result.designs), code
 
 
 SHELL = blocks("sh")

@@ -137,6 +137,7 @@ HOMONYMS = {
     "path": {
         "service/api/http/problem_details.py",
         "service/client/values.py",
+        "service/command/local.py",
         "service/jobs/faults.py",
         "service/observability/telemetry.py",
         "service/outlines/answer.py",

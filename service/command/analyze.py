@@ -9,16 +9,23 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from rich.console import Console
+from rich.table import Table
+
 from service import client as service
 from service.command.inputs import SourceError, read_object
+from service.command.local import analyze_here, find_service
+from service.command.tables import create_console, flatten_values, format_value
 from synthesis.model.json_object import JsonObject
 
 
-def analyze(source: str, url: str, key: str | None, output: Path | None) -> None:
+def analyze(source: str, url: str | None, key: str | None, output: Path | None, *, as_json: bool = False) -> None:
     """Print the analysis of a mechanism or request body in a file, or write it to a file.
 
-    Numbers are written in full. A file whose name ends in ``.csv`` has a column for each quantity with one value per
-    position of the input, named by its place in the answer: ``joints.A.x``.
+    Tables are printed, or JSON. Without the URL of a service, and without one on this machine, the mechanism is
+    analysed in this process. Numbers in files and in JSON are written in full. A file whose name ends in ``.csv`` has a
+    column for each quantity with one value per position of the input, named by its place in the answer:
+    ``joints.A.x``.
 
     Raises
     ------
@@ -32,8 +39,15 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
     request = content if "mechanism" in content else {"mechanism": content}
     if not isinstance(request["mechanism"], dict):
         raise SourceError(f"{source} contains no mechanism")
-    with service.Client(url, key) as client:
-        answer = client.analysis(request)
+    place = find_service(url)
+    if place is None:
+        answer = analyze_here(request)
+    else:
+        with service.Client(place, key) as client:
+            answer = client.analysis(request)
+    if output is None and not as_json:
+        report(answer, create_console())
+        return
     table = output is not None and output.suffix.lower() == ".csv"
     text = _format_table(source, answer) if table else json.dumps(answer, ensure_ascii=False) + "\n"
     if output is None:
@@ -42,6 +56,35 @@ def analyze(source: str, url: str, key: str | None, output: Path | None) -> None
         output.parent.mkdir(parents=True, exist_ok=True)
         # Written as it is: CSV already has its line ends.
         output.write_text(text, encoding="utf-8", newline="")
+
+
+def report(answer: JsonObject, console: Console) -> None:
+    """Print the single values of an analysis, and the range of each quantity over the motion."""
+    inputs = answer.get("input_angle") or []
+    table = Table(title="Values")
+    for name in ("quantity", "value"):
+        table.add_column(name, justify="right" if name == "value" else "left")
+    for name, value in flatten_values(answer):
+        table.add_row(name, value)
+    if table.row_count:
+        console.print(table)
+    ranges = Table(title=f"Over {len(inputs)} positions of the input")
+    for name in ("quantity", "least", "at input", "greatest", "at input"):
+        ranges.add_column(name, justify="left" if name == "quantity" else "right")
+    for name, values in _iterate_lists("", answer):
+        numbers = [
+            (value, k)
+            for k, value in enumerate(values)
+            if isinstance(value, int | float) and not isinstance(value, bool)
+        ]
+        # Where the mechanism cannot be assembled, the values are null.
+        if len(values) != len(inputs) or name == "input_angle" or not numbers:
+            continue
+        ends = min(numbers), max(numbers, key=lambda number: number[0])
+        places = [format_value(x) for value, k in ends for x in (value, inputs[k])]
+        ranges.add_row(name, *places)
+    if ranges.row_count:
+        console.print(ranges)
 
 
 def _format_table(source: str, answer: JsonObject) -> str:

@@ -89,7 +89,8 @@ def _run_file_command(command: argparse.Namespace) -> int:
         else:
             from service.command.analyze import analyze
 
-            analyze(command.mechanism, command.url, os.environ.get("MECHSYNTH_API_KEY"), command.output)
+            key = os.environ.get("MECHSYNTH_API_KEY")
+            analyze(command.mechanism, command.url, key, command.output, as_json=command.json)
     except (SourceError, ClientError, OSError) as failure:
         print(f"mechsynth {command.name}: {failure}", file=sys.stderr)
         return EXIT_FAILURE
@@ -99,8 +100,9 @@ def _run_file_command(command: argparse.Namespace) -> int:
 def _add_service_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--url",
-        default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
-        help="URL of the service (default: MECHSYNTH_URL; the API key is read from MECHSYNTH_API_KEY)",
+        default=os.environ.get("MECHSYNTH_URL"),
+        help="URL of the service (default: MECHSYNTH_URL, or a service on this machine, or this process itself; "
+        "the API key is read from MECHSYNTH_API_KEY)",
     )
 
 
@@ -199,7 +201,8 @@ def _build_parser() -> argparse.ArgumentParser:
     analyze = commands.add_parser("analyze", help="analyse the mechanism in a file: angles, joints, ...")
     analyze.add_argument("mechanism", help="a JSON file with a mechanism or a request body; - for standard input")
     _add_service_options(analyze)
-    analyze.add_argument("-o", "--output", type=Path, help="output file, .json or .csv; by default JSON is printed")
+    analyze.add_argument("--json", action="store_true", help="print the analysis as JSON instead of tables")
+    analyze.add_argument("-o", "--output", type=Path, help="output file, .json or .csv; by default tables are printed")
     draw = commands.add_parser("draw", help="draw a design of an answer, without a service")
     draw.add_argument("answer", help="output of mechsynth solve --json; - for standard input")
     draw.add_argument("-o", "--output", type=Path, required=True, help="output file: .svg, .gif, .dxf or .csv")

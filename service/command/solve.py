@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -16,18 +17,15 @@ from rich.table import Table
 
 from service import client as service
 from service.command.inputs import STANDARD_INPUT, SourceError, read_problem
+from service.command.local import draw_here, find_service, solve_here
+from service.command.tables import MAX_COLUMNS, create_console, flatten_values, format_value
 from service.units import list_symbols
 from synthesis.model.counting import format_count
 from synthesis.model.json_object import JsonObject
 from synthesis.registry import parse_problem
 
-_MAX_COLUMNS = 7
-"""Maximum number of metrics in a row on a terminal; the files have all of them."""
-
-_FILE_WIDTH = 10_000
-"""Width of the output in a file, characters; more than any table needs."""
-
-_OMITTED_KEYS = {"skeleton", "profile", "pitch_curve", "program", "type"}
+Draw = Callable[[int, str], bytes | None]
+"""Function that draws a design, counted from 0, in a format; None if the design has no such file."""
 
 
 class SolveFailure(Exception):
@@ -35,11 +33,12 @@ class SolveFailure(Exception):
 
 
 def solve(
-    source: str, url: str, key: str | None, output: Path | None, forms: Sequence[str], *, as_json: bool = False
+    source: str, url: str | None, key: str | None, output: Path | None, forms: Sequence[str], *, as_json: bool = False
 ) -> None:
     """Solve the problem in a file (``-``: standard input), print the answer and write the drawings.
 
-    The answer is printed as tables, or as JSON: the job with its problem and its result, every number in full.
+    Without the URL of a service, and without one on this machine, the problem is solved in this process. The answer is
+    printed as tables, or as JSON: the job with its problem and its result, every number in full.
 
     Raises
     ------
@@ -55,25 +54,44 @@ def solve(
         if output is not None
         else Path("designs" if source == STANDARD_INPUT else f"{Path(source).stem}-designs")
     )
-    with service.Client(url, key) as client:
-        try:
-            job = _solve_with_progress(client, problem, label)
-            if as_json:
-                print(json.dumps(asdict(job), ensure_ascii=False))
-            else:
-                report(job, _create_console())
-            written = list(_write_drawings(client, job, folder, forms))
-        except service.Refused as refusal:
-            raise SolveFailure(f"the service refused the request: {refusal}") from None
-        except service.ClientError as error:
-            raise SolveFailure(str(error)) from None
+    place = find_service(url)
+    try:
+        if place is None:
+            job, draw = _solve_locally(problem, label)
+            written = _report_and_draw(job, draw, folder, forms, as_json=as_json)
+        else:
+            with service.Client(place, key) as client:
+                job = _solve_with_progress(client, problem, label)
+                draw = partial(client.file, job.id)
+                written = _report_and_draw(job, draw, folder, forms, as_json=as_json)
+    except service.Refused as refusal:
+        raise SolveFailure(f"the request was refused: {refusal}") from None
+    except service.ClientError as error:
+        raise SolveFailure(str(error)) from None
     if written:
         print(f"\nwritten: {folder}/ {', '.join(written)}", file=sys.stderr if as_json else sys.stdout)
 
 
-def _create_console() -> Console:
-    """Return the console for tables: as wide as the terminal, or for a file wide enough for any table."""
-    return Console(soft_wrap=True) if sys.stdout.isatty() else Console(soft_wrap=True, width=_FILE_WIDTH)
+def _report_and_draw(job: service.Job, draw: Draw, folder: Path, forms: Sequence[str], *, as_json: bool) -> list[str]:
+    """Print the answer and write the drawings; return the names of the files."""
+    if as_json:
+        print(json.dumps(asdict(job), ensure_ascii=False))
+    else:
+        report(job, create_console())
+    return list(_write_drawings(draw, job, folder, forms))
+
+
+def _solve_locally(problem: JsonObject, label: str | None) -> tuple[service.Job, Draw]:
+    """Solve a problem in this process; return its job and the function that draws its designs."""
+    try:
+        with _create_bar() as bar:
+            task = bar.add_task("loading", total=1.0)
+            job, read = solve_here(
+                problem, label, lambda share, message: bar.update(task, completed=share, description=message)
+            )
+    except KeyboardInterrupt:
+        raise SolveFailure("interrupted") from None
+    return job, partial(draw_here, job, read)
 
 
 def _solve_with_progress(client: service.Client, problem: JsonObject, label: str | None) -> service.Job:
@@ -121,7 +139,7 @@ def report(job: service.Job, console: Console) -> None:
     table = Table(title=f"Design 1: {best['mechanism']['type']}" + (f", lengths in {unit}" if unit else ""))
     table.add_column("dimension")
     table.add_column("value", justify="right")
-    for name, value in _flatten_dimensions(best["mechanism"]):
+    for name, value in flatten_values(best["mechanism"]):
         table.add_row(name, value)
     console.print(table)
     table = Table(title="Checks of design 1, when driven")
@@ -138,7 +156,7 @@ def report(job: service.Job, console: Console) -> None:
 def _format_amount(value: float | None, unit: str) -> str:
     if value is None:
         return ""
-    return f"{_format_value(value)}{unit}" if unit in ("", "°") else f"{_format_value(value)} {unit}"
+    return f"{format_value(value)}{unit}" if unit in ("", "°") else f"{format_value(value)} {unit}"
 
 
 def _find_units(problem: JsonObject) -> dict[str, str]:
@@ -153,7 +171,7 @@ def _compare_designs(designs: Sequence[JsonObject]) -> Table:
     plain = [name for name, value in designs[0]["metrics"].items() if isinstance(value, (int, float, str))]
     # Metrics that are equal for all designs do not help to choose one.
     telling = [name for name in plain if len({str(design["metrics"].get(name)) for design in designs}) > 1]
-    columns = (telling or plain)[:_MAX_COLUMNS]
+    columns = (telling or plain)[:MAX_COLUMNS]
     table = Table(title=f"{format_count(len(designs), 'design')}, best first")
     table.add_column("", justify="right")
     table.add_column("mechanism")
@@ -161,37 +179,15 @@ def _compare_designs(designs: Sequence[JsonObject]) -> Table:
         table.add_column(name.replace("_", " "), justify="right")
     for n, design in enumerate(designs):
         metrics = design["metrics"]
-        table.add_row(str(n + 1), design["mechanism"]["type"], *(_format_value(metrics.get(name)) for name in columns))
+        table.add_row(str(n + 1), design["mechanism"]["type"], *(format_value(metrics.get(name)) for name in columns))
     return table
 
 
-def _flatten_dimensions(value: object, name: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every dimension with the path of its name; long lists and derived data are left to the files."""
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            if key not in _OMITTED_KEYS:
-                yield from _flatten_dimensions(inner, f"{name} {key}".strip().replace("_", " "))
-    elif isinstance(value, list) and any(isinstance(inner, (dict, list)) for inner in value):
-        for n, inner in enumerate(value):
-            yield from _flatten_dimensions(inner, f"{name} {n}")
-    elif isinstance(value, list):
-        if value and len(value) <= _MAX_COLUMNS:
-            yield name, ", ".join(map(_format_value, value))
-    elif value is not None:
-        yield name, _format_value(value)
-
-
-def _format_value(value: object) -> str:
-    if value is None:
-        return ""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _write_drawings(client: service.Client, job: service.Job, folder: Path, forms: Sequence[str]) -> Iterator[str]:
+def _write_drawings(draw: Draw, job: service.Job, folder: Path, forms: Sequence[str]) -> Iterator[str]:
     assert job.result is not None
     for n in range(len(job.result["designs"])):
         for form in forms:
-            content = client.file(job.id, n, form)
+            content = draw(n, form)
             if content is not None:
                 # Only now, so that an answer without files leaves no empty folder.
                 folder.mkdir(parents=True, exist_ok=True)

@@ -15,7 +15,7 @@ from service.outlines.formats import MILLIMETRES_PER_UNIT
 from service.outlines.limits import MAX_COORDINATE
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-_UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
+_UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+|°)\s*[\])]")
 MAX_CELL_LENGTH = 64
 """Maximum length of a number, or of a name with its unit, characters."""
 
@@ -90,28 +90,35 @@ def _decode_text(content: bytes) -> str:
 
 
 def _has_names(cells: list[str], decimal_comma: bool) -> bool:
-    return not any(_NUMBER.fullmatch(_replace_comma(cell, decimal_comma)) for cell in cells)
+    return not any(_NUMBER.fullmatch(replace_comma(cell, decimal_comma)) for cell in cells)
+
+
+def split_unit(cell: str) -> tuple[str, str | None]:
+    """Return the name of a column and its unit, as in ``x [mm]``; None if it has no unit."""
+    found = _UNIT.fullmatch(cell) if len(cell) <= MAX_CELL_LENGTH else None
+    return (found[1], found[2]) if found else (cell, None)
 
 
 def _find_columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
     """Return the names, indices and unit of the two columns to read."""
-    parted = [_UNIT.fullmatch(cell) if len(cell) <= MAX_CELL_LENGTH else None for cell in cells]
-    names = [found[1] if found else cell for found, cell in zip(parted, cells, strict=True)]
+    parted = [split_unit(cell) for cell in cells]
+    names = [name for name, _ in parted]
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
     if len(cells) < 2:
         raise UnsuitableDrawing(compose("imports-table-single-column"))
-    stated: set[str] = {found[2] if (found := parted[k]) else "" for k in columns}
+    stated = {parted[k][1] or "" for k in columns}
     units: dict[str, float] = {unit: MILLIMETRES_PER_UNIT[unit] for unit in MILLIMETRES_PER_UNIT}
     return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
 
 
-def _replace_comma(cell: str, decimal_comma: bool) -> str:
+def replace_comma(cell: str, decimal_comma: bool) -> str:
+    """Return the text of a number with a decimal point; ``decimal_comma`` permits a comma in its place."""
     return cell.replace(",", ".", 1) if decimal_comma else cell
 
 
 def _parse_number(cell: str, decimal_comma: bool, line: int) -> float:
-    spelt = _replace_comma(cell[: MAX_CELL_LENGTH + 1], decimal_comma)
+    spelt = replace_comma(cell[: MAX_CELL_LENGTH + 1], decimal_comma)
     if not _NUMBER.fullmatch(spelt) or len(spelt) > MAX_CELL_LENGTH:
         raise MalformedDrawing(compose("imports-table-cell-not-number", line=f"{line}"))
     value = float(spelt)

@@ -61,10 +61,14 @@ class RatioCheck(NamedTuple):
 
 
 class TableColumns(NamedTuple):
-    """Columns of a table that states a problem: the list field that its rows fill, and the required columns."""
+    """Columns of a table that states a problem: the list field that its rows fill, and the required columns.
+
+    ``closes`` is true if rows that end where they began state a closed curve, by the field ``closed``.
+    """
 
     field: str
     required: tuple[str, ...]
+    closes: bool = False
 
 
 @dataclass(frozen=True)

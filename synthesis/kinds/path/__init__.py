@@ -59,6 +59,6 @@ KIND = Kind(
     brief=_is_brief,
     nearly=_verify_on_grid,
     usable=_request_usable,
-    columns=TableColumns("points", ("x", "y")),
+    columns=TableColumns("points", ("x", "y"), closes=True),
     gallery=GALLERY,
 )

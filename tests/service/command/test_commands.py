@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import socket
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from typing import NamedTuple
@@ -21,6 +22,11 @@ FOURBAR = {
 }
 
 
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as place:
+        return place.getsockname()[1]
+
+
 class Done(NamedTuple):
     """What a command has said; it is run in this process, which takes a tenth of the time."""
 
@@ -35,6 +41,7 @@ def mechsynth(folder, *arguments, stdin=""):
         patch.chdir(folder)
         patch.setattr(sys, "stdin", io.StringIO(stdin))
         patch.delenv("MECHSYNTH_API_KEY", raising=False)
+        patch.delenv("MECHSYNTH_URL", raising=False)
         return Done(main(arguments), out.getvalue(), err.getvalue())
 
 
@@ -90,6 +97,29 @@ def test_nothing_of_a_table_is_cut_in_a_file(server, tmp_path):
             {"kind": "path", "points": [{"x": 0, "y": 0}, {"x": 1, "y": 2}, {"x": 3, "y": 1}]},
         ),
         (
+            # Decimal commas, a unit, comments, and a curve that returns to its start.
+            "# scan\nx [cm];y [cm];tolerance [cm]\n0,5;0;0,1\n1;2,25;0,1 # top\n\n3;1;0,1\n2;-1;0,2\n0,5;0;0,1\n",
+            {
+                "kind": "path",
+                "length_unit": "cm",
+                "closed": True,
+                "points": [
+                    {"x": 0.5, "y": 0, "tolerance": 0.1},
+                    {"x": 1, "y": 2.25, "tolerance": 0.1},
+                    {"x": 3, "y": 1, "tolerance": 0.1},
+                    {"x": 2, "y": -1, "tolerance": 0.2},
+                ],
+            },
+        ),
+        (
+            "x [in],y [in],angle [°]\n0,0,0\n1,2,-30\n",
+            {
+                "kind": "motion",
+                "length_unit": "in",
+                "positions": [{"x": 0, "y": 0, "angle": 0}, {"x": 1, "y": 2, "angle": -30}],
+            },
+        ),
+        (
             "input,output\n0,0\n30,12\n60,40\n",
             {
                 "kind": "function",
@@ -121,6 +151,11 @@ def test_a_table_is_solved(server, tmp_path):
         ("a,b\n1,2\n", "the first line must name the columns"),
         ("", "the first line must name the columns"),
         ("x,y\n1,2,3\n", "line 2: more cells than columns"),
+        ("# from a scan\nx,y\n1,2\n1,2,3\n", "line 4: more cells than columns"),
+        ("x [mm],y [in]\n1,2\n", "the columns have different units: in, mm"),
+        ("x [furlong],y [furlong]\n1,2\n", "unknown length unit furlong; known: mm"),
+        ("x [mm],y [mm],angle [rad]\n1,2,0\n", "angle is in rad; angles are in degrees"),
+        ("x;y\n1,2,3;4\n", "line 2: x is not a number: 1.2,3"),
         ("x,y\n1,2\n3,north\n", "line 3: y is not a number: north"),
         ("x,y\n1,NaN\n", "line 2: y is not a number: NaN"),
         ("x,y,colour\n1,2,3\n4,5,6\n7,1,2\n", "/problem/points/0/colour"),
@@ -137,7 +172,7 @@ def test_what_is_wrong_with_a_table_is_said(server, tmp_path, table, says):
 @pytest.mark.parametrize("body", [FOURBAR, {"mechanism": FOURBAR, "motion": {"from": 30, "to": 90, "steps": 4}}])
 def test_a_mechanism_is_analysed(server, tmp_path, body):
     request = body if "mechanism" in body else {"mechanism": body}
-    done = mechsynth(tmp_path, "analyze", "-", "--url", server.url, stdin=json.dumps(body))
+    done = mechsynth(tmp_path, "analyze", "-", "--url", server.url, "--json", stdin=json.dumps(body))
     assert done.returncode == 0, done.stderr
     expected = server.client.post("/v1/analyses", json=request).json()
     assert json.loads(done.stdout) == expected
@@ -149,6 +184,59 @@ def test_a_mechanism_is_analysed(server, tmp_path, body):
     assert [float(row["input_angle"]) for row in rows] == expected["input_angle"]
     assert [float(row["joints.B.vx"]) for row in rows] == expected["joints"]["B"]["vx"]
     assert [float(row["transmission_angles.coupler"]) for row in rows] == expected["transmission_angles"]["coupler"]
+
+
+def test_an_analysis_is_printed_as_tables(monkeypatch, tmp_path):
+    """Least and greatest values with their inputs, by a process of its own: no service runs at this address."""
+    monkeypatch.setattr("service.command.local.DEFAULT_URL", f"http://127.0.0.1:{free_port()}")
+    body = {"mechanism": FOURBAR, "motion": {"from": 30, "to": 90, "steps": 4}}
+    done = mechsynth(tmp_path, "analyze", "-", stdin=json.dumps(body))
+    assert done.returncode == 0, done.stderr
+    assert "this process computes the answer" in done.stderr
+    answer = json.loads(mechsynth(tmp_path, "analyze", "-", "--json", stdin=json.dumps(body)).stdout)
+    angles = answer["transmission_angles"]["coupler"]
+    (row,) = (line for line in done.stdout.splitlines() if "transmission_angles.coupler" in line)
+    printed = [float(cell) for cell in row.replace("│", " ").split()[1:]]
+    least, greatest = (angles.index(extreme(angles)) for extreme in (min, max))
+    expected = [angles[least], answer["input_angle"][least], angles[greatest], answer["input_angle"][greatest]]
+    assert printed == pytest.approx(expected, rel=1e-5)
+    assert "Over 5 positions of the input" in done.stdout
+
+
+def test_a_problem_is_solved_without_a_service(monkeypatch, tmp_path):
+    monkeypatch.setattr("service.command.local.DEFAULT_URL", f"http://127.0.0.1:{free_port()}")
+    (tmp_path / "train.json").write_text(json.dumps(TRAIN))
+    done = mechsynth(tmp_path, "solve", "train.json", "--json", "--forms", "svg,csv")
+    assert done.returncode == 0, done.stderr
+    assert "no service at" in done.stderr
+    job = json.loads(done.stdout)
+    assert (job["status"], job["label"], len(job["result"]["designs"])) == ("succeeded", "train", 2)
+    assert job["problem"]["pressure_angle"] == 20.0
+    written = {file.name for file in (tmp_path / "train-designs").iterdir()}
+    assert written == {"design-1.svg", "design-1.csv", "design-2.svg", "design-2.csv"}
+    # The answer can be drawn again like that of a service.
+    (tmp_path / "answer.json").write_text(done.stdout)
+    drawn = mechsynth(tmp_path, "draw", "answer.json", "-o", "again.svg")
+    assert drawn.returncode == 0, drawn.stderr
+    assert (tmp_path / "again.svg").read_bytes() == (tmp_path / "train-designs" / "design-1.svg").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("command", "content", "says"),
+    [
+        ("solve", {"kind": "gear_trane", "ratio": 2}, "/problem/kind"),
+        ("solve", {**TRAIN, "ratio": -2.5, "max_stage": 2}, "/problem/max_stage"),
+        ("solve", {**TRAIN, "module": 1.0, "diametral_pitch": 8.0}, "/problem/diametral_pitch"),
+        ("analyze", {**FOURBAR, "links": {"input": 2.0}}, "/mechanism/links/coupler"),
+        ("analyze", {"type": "fivebaar"}, "/mechanism/type"),
+    ],
+)
+def test_without_a_service_faults_have_their_places(monkeypatch, tmp_path, command, content, says):
+    monkeypatch.setattr("service.command.local.DEFAULT_URL", f"http://127.0.0.1:{free_port()}")
+    done = mechsynth(tmp_path, command, "-", stdin=json.dumps(content))
+    assert done.returncode == 1
+    assert says in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(
