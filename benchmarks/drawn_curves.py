@@ -86,7 +86,7 @@ def find_falsehood(
     reported = np.array([target.point_residual for target in design.targets])
     if np.abs(np.abs(at_targets.points - points) - reported).max() > MISS_TOLERANCE * radius:
         return "distance"
-    return "" if transmits(design, loops, whole, find_dyad_pins(design, loops)) else "angle"
+    return "" if transmits(design, loops, whole, find_dyad_pins(design.mechanism.type, loops)) else "angle"
 
 
 def measure_curve(curve: Complex, mechanisms: list[str], angle: float, seed: int) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Components of problems: positions, points, limits, masses, loads, with the names of the API's schemas.
 
-There is one exception: the stock of a rotor is named ``RotorStock``, because ``Stock`` is the stock of links. The units
-of a train series have no class here; they are given as mappings.
+The units of a train series have no class here; they are given as mappings.
 """
 
 from synthesis.kinds.balancing.statement.counterweights import (
@@ -16,10 +15,8 @@ from synthesis.kinds.balancing.statement.rotor import (
     Influence,
     Reading,
     RotorMass,
+    RotorStock,
     TrialRun,
-)
-from synthesis.kinds.balancing.statement.rotor import (
-    Stock as RotorStock,
 )
 from synthesis.kinds.cam.statement.followers import (
     BarrelRoller,

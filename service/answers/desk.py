@@ -139,4 +139,5 @@ class AnswerDesk:
         gc.freeze()
         if not self._stopping.is_set():
             self._loaded.set()
-            self._analyses.begin()
+            for pool in (self._analyses, self._drawings):
+                pool.begin()

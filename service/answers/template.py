@@ -23,10 +23,13 @@ def _load() -> None:
 
     from service import render, warm_analysis
     from service.answers import analysis, designs, forces, reports, simulations
+    from service.imports import reading as curve_reading
+    from service.outlines import reading as outline_reading
     from synthesis import registry
 
     # Only their import matters: forked processes then need no imports of their own.
-    assert all((render, analysis, designs, forces, reports, simulations, registry))
+    assert all((analysis, designs, forces, reports, simulations, registry, curve_reading, outline_reading))
+    render.load_sheets()
     try:
         warm_analysis.warm_up()
     except Exception:  # each request will report its own failure

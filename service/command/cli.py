@@ -59,6 +59,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if command.name == "keys":
         return _run_keys(command)
+    return _warm()
+
+
+def _warm() -> int:
+    from service.api.http.documents import write_documents
+    from service.server.app import build_documents
     from service.server.precompile import WarmingFailure, warm
 
     try:
@@ -66,6 +72,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except WarmingFailure as failure:
         print(f"mechsynth warm: {failure}", file=sys.stderr)
         return EXIT_FAILURE
+    for _ in write_documents(build_documents):
+        pass  # nobody but the cache folder needs them now
     return 0
 
 
@@ -209,7 +217,7 @@ def _build_parser() -> argparse.ArgumentParser:
     create.add_argument("--further", action="store_true", help="create another key for an existing tenant")
     keys.add_parser("list", help="list the ids of all keys, without the keys themselves")
     keys.add_parser("revoke", help="revoke a key").add_argument("id", help="id of the key")
-    commands.add_parser("warm", help="compile the numerical kernels ahead of the first start")
+    commands.add_parser("warm", help="compile the kernels and write the documents ahead of the first start")
     return parser
 
 

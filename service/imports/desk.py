@@ -6,7 +6,6 @@ A reader that exceeds its limits is killed and replaced, so that no file can blo
 
 from __future__ import annotations
 
-import os
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -22,15 +21,22 @@ READER_COUNT = 2
 
 
 class ImportDesk:
-    """Reads files in turn; ``memory_mb`` is the memory limit for a file. For use on one event loop only."""
+    """Reads files in turn. For use on one event loop only.
+
+    ``memory_mb`` is the memory limit for a file. ``forks`` returns whether the readers can be forked from the template
+    process (:mod:`service.answers.template`), which has loaded their libraries; else they are spawned.
+    """
 
     def __init__(
-        self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB, metrics: PoolMetrics | None = None
+        self,
+        log_level: str,
+        log_format: Format,
+        memory_mb: int = MEMORY_MB,
+        metrics: PoolMetrics | None = None,
+        forks: Callable[[], bool] = lambda: False,
     ) -> None:
-        settings = os.getpid(), log_level, log_format, memory_mb
-        self.pool = RequestPool(
-            "files", ProcessStart(reader.prepare, settings), Limits(READ_TIMEOUT_S), hands=READER_COUNT, metrics=metrics
-        )
+        start = ProcessStart(reader.prepare, (log_level, log_format, memory_mb), forks)
+        self.pool = RequestPool("files", start, Limits(READ_TIMEOUT_S), hands=READER_COUNT, metrics=metrics)
 
     async def read(
         self, gone: Callable[[], Awaitable[bool]], tenant: str, door: reader.Door, content: bytes, **asked: Any

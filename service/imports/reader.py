@@ -5,6 +5,7 @@ The server imports this module, too, so it imports no library that reads files.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
@@ -44,9 +45,10 @@ class Fault:
         return _FAULT_CLASSES[self.kind](self.message)
 
 
-def prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
+def prepare(log_level: str, log_format: Format, memory_mb: int) -> None:
     """Prepare the process: end with the server, limits, libraries."""
-    restrict_process(server_pid, log_level, log_format)
+    # The parent is the server, or the template process that was forked, which ends with the server.
+    restrict_process(os.getppid(), log_level, log_format)
     for library in ("service.imports.reading", "service.outlines.reading"):
         import_module(library)
     limit_memory(memory_mb)

@@ -52,7 +52,8 @@ class NotBuilt(ValueError):
 # The makers of a form are imported when one is first used, so that a starting server loads no drawing library.
 
 
-def _load_sheets() -> dict[str, Maker]:
+def load_sheets() -> dict[str, Maker]:
+    """Import and return the functions that draw designs, by type of mechanism."""
     from service.render.cam.sheet import draw_barrel_sheet, draw_cam_sheet
     from service.render.gears.gearbox_sheet import draw_gearbox_sheet, draw_layshaft_sheet
     from service.render.gears.planetary_sheet import draw_planetary_sheet
@@ -166,7 +167,7 @@ def _load_tables() -> dict[str, Maker]:
 
 
 _MAKER_LOADERS: dict[Form, Callable[[], dict[str, Maker]]] = {
-    "svg": _load_sheets,
+    "svg": load_sheets,
     "gif": _load_animations,
     "dxf": _load_drawings,
     "csv": _load_tables,

@@ -62,6 +62,7 @@ MADE: dict[Key, Row] = {
     ("motion", "stephenson_1"): _sixbar(SIXBAR_MOTION, "stephenson_1"),
     ("motion", "stephenson_2"): _sixbar(SIXBAR_MOTION, "stephenson_2"),
     ("motion", "stephenson_3"): Row({**MOTION, "driver_dyad": {"link": "coupler"}}),
+    ("motion", "eightbar"): _sixbar(SIXBAR_MOTION, "eightbar"),
     ("path", "fourbar"): Row({"kind": "path", "points": SIXBAR_PATH["points"][:5], "max_designs": 1}),
     ("path", "slider_crank"): Row(
         {"kind": "path", "points": SIXBAR_PATH["points"], "mechanism": "slider_crank", "max_designs": 1}
@@ -133,6 +134,7 @@ MADE: dict[Key, Row] = {
     ("function", "watt_2"): _sixbar(FUNCTION, "watt_2"),
     ("function", "stephenson_2"): _sixbar(FUNCTION, "stephenson_2"),
     ("function", "stephenson_3"): _sixbar(FUNCTION, "stephenson_3"),
+    ("function", "eightbar"): _sixbar(FUNCTION, "eightbar"),
     ("cam", "cam"): Row(DRIVES["roller"]),
     ("cam", "barrel_cam"): Row(BARREL),
     ("balancing", "skeleton"): _example("balancing", "skeleton"),
@@ -160,7 +162,6 @@ REFUSED: dict[Key, tuple[Row, str]] = {
 
 NEVER: tuple[Key, ...] = (
     ("motion", "geared_fivebar"),
-    ("motion", "eightbar"),
     ("path", "inverted_slider_crank"),
     ("path", "watt_2"),
     ("function", "watt_1"),

@@ -25,12 +25,24 @@ def is_gzip_accepted(request: Request) -> bool:
     return GZIP in request.headers.get("accept-encoding", "")
 
 
+def pack(content: bytes) -> bytes:
+    """Compress content with gzip. Equal content gives equal bytes."""
+    return gzip.compress(content, _GZIP_LEVEL, mtime=0)
+
+
 @dataclass(frozen=True)
 class Representation:
     """Content of a response."""
 
     content: bytes
     media_type: str
+
+    @classmethod
+    def from_packed(cls, packed: bytes, media_type: str) -> Representation:
+        """Create the representation of content that is compressed with gzip."""
+        representation = cls(gzip.decompress(packed), media_type)
+        representation.__dict__["gzip_content"] = packed  # where the property keeps it, so that nobody packs it again
+        return representation
 
     @cached_property
     def version(self) -> str:
@@ -40,7 +52,7 @@ class Representation:
     @cached_property
     def gzip_content(self) -> bytes:
         """The content compressed with gzip."""
-        return gzip.compress(self.content, _GZIP_LEVEL)
+        return pack(self.content)
 
     def respond(self, request: Request, headers: dict[str, str]) -> Response:
         """Return a response with the content and its entity tag, or 304 if the client has this version."""

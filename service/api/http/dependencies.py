@@ -8,6 +8,7 @@ from typing import Annotated, TypeVar
 from fastapi import Depends, Request
 
 from service.answers.desk import AnswerDesk
+from service.api.http.documents import Documents
 from service.imports.desk import ImportDesk
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.rows import BatchSummary
@@ -37,3 +38,4 @@ BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_build_dependency("batc
 Answers = Annotated[AnswerDesk, Depends(_build_dependency("answers", AnswerDesk))]
 Readers = Annotated[ImportDesk, Depends(_build_dependency("readers", ImportDesk))]
 Bench = Annotated[Workshop, Depends(_build_dependency("workshop", Workshop))]
+ApiDocuments = Annotated[Documents, Depends(_build_dependency("documents", Documents))]

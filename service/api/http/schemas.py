@@ -80,7 +80,8 @@ class Job(JobListItem):
     ``succeeded`` means that the computation ended with a reliable answer, which may be that no design exists.
     """
 
-    model_config = ConfigDict(title="Job")
+    # The service sends jobs without validating them; its start would wait for the validator of all answers.
+    model_config = ConfigDict(title="Job", defer_build=True)
 
     problem: Problem = Field(description="The problem with all defaults; posted again it counts as the same problem.")
     result: AnyResult | None = Field(description="Answer of a job that has succeeded.")

@@ -31,7 +31,7 @@ from service.api.routes.batch_schemas import (
     describe_batch,
     dump_batch,
 )
-from service.api.routes.events import build_event_schema, stream_events
+from service.api.routes.events import describe_events, stream_events
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow
@@ -265,7 +265,7 @@ async def weigh_up_batch(
         200: {
             "description": "Events until the batch has ended, as for a job: `state` (the batch as in a list) and "
             "`progress`; `removed` if it is removed before its end was sent.",
-            "content": {"text/event-stream": {"itemSchema": build_event_schema("BatchListItem")}},
+            "content": {"text/event-stream": describe_events("BatchListItem")},
         },
         204: {"description": "The client already has the event of the final state and need not reconnect."},
         **problem_details.describe_responses(e404=NO_BATCH, e503="Too many clients of the tenant are listening."),

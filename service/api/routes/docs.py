@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from importlib.resources import files
 from threading import Lock
 from typing import Any
@@ -11,14 +10,18 @@ from fastapi import FastAPI, Request, Response
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 from pydantic_core import to_json
-from starlette.concurrency import run_in_threadpool
 from starlette.staticfiles import StaticFiles
 
 from service.api.http import problem_details
 from service.api.http.auth import SECURITY_SCHEME
-from service.api.http.cached_representation import Representation
+from service.api.http.cached_representation import pack
+from service.api.http.dependencies import ApiDocuments
+from service.api.http.openapi_schemas import simplify_schemas
 from service.api.http.problem_details import ProblemDetails
 from service.api.routes import analyses
+
+DOCUMENT, OPEN_DOCUMENT = "openapi", "openapi-open"
+"""Names of the documents of services with and without keys."""
 
 _ASSETS = "/docs/assets"
 
@@ -48,15 +51,9 @@ def install(app: FastAPI) -> None:
 
     app.openapi = build_openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
 
-    @cache
-    def build_document(keys: bool) -> Representation:
-        whole = app.openapi()
-        return Representation(to_json(whole if keys else _without_keys(whole)), "application/json")
-
     @app.get("/openapi.json", include_in_schema=False)
-    async def openapi_document(request: Request) -> Response:
-        # In a thread, because the first document waits for the import of the analysis models.
-        shown = await run_in_threadpool(build_document, not await request.app.state.gate.is_open())
+    async def openapi_document(request: Request, documents: ApiDocuments) -> Response:
+        shown = await documents.find(OPEN_DOCUMENT if await request.app.state.gate.is_open() else DOCUMENT)
         return shown.respond(request, {"Cache-Control": "no-cache"})
 
     @app.get("/docs", include_in_schema=False)
@@ -72,12 +69,19 @@ def install(app: FastAPI) -> None:
     app.mount(_ASSETS, StaticFiles(directory=str(files("fastapi_offline") / "static")), name="docs-assets")
 
 
+def pack_documents(app: FastAPI) -> dict[str, bytes]:
+    """Return the OpenAPI documents of services with and without keys, packed, by name."""
+    whole = app.openapi()
+    return {DOCUMENT: pack(to_json(whole)), OPEN_DOCUMENT: pack(to_json(remove_keys(whole)))}
+
+
 def _complete(document: dict[str, Any]) -> None:
     schemas = document.setdefault("components", {}).setdefault("schemas", {})
     # The error responses refer to these by name, because their media type is not the framework's.
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
     analyses.complete(document)
+    document["servers"] = [{"url": "/", "description": "The service that has sent this document."}]
     document["components"]["securitySchemes"] = {
         SECURITY_SCHEME: {
             "type": "http",
@@ -87,8 +91,9 @@ def _complete(document: dict[str, Any]) -> None:
     }
     for path, methods in document["paths"].items():
         for operation in methods.values():
-            if path.startswith("/v1/"):
-                operation["security"] = [{SECURITY_SCHEME: []}]
+            is_guarded = path.startswith("/v1/")
+            operation["security"] = [{SECURITY_SCHEME: []}] if is_guarded else []
+            if is_guarded:
                 _add(operation, _TENANT_RESPONSES)
             _add(operation, _CONNECTION_RESPONSES)
     # The framework adds its own kind of 422 to every operation with parameters; that response does not exist here.
@@ -98,10 +103,11 @@ def _complete(document: dict[str, Any]) -> None:
                 del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         schemas.pop(name, None)
+    simplify_schemas(document)
 
 
-def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
-    """Return the document of a service without keys, without security requirements."""
+def remove_keys(document: dict[str, Any]) -> dict[str, Any]:
+    """Return the document of a service without keys, which no operation requires."""
     paths = {
         path: {
             method: {name: value for name, value in operation.items() if name != "security"}
@@ -110,7 +116,7 @@ def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
         for path, methods in document["paths"].items()
     }
     components = {name: value for name, value in document["components"].items() if name != "securitySchemes"}
-    return {**document, "paths": paths, "components": components}
+    return {**document, "security": [], "paths": paths, "components": components}
 
 
 def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:

@@ -41,8 +41,15 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-def build_event_schema(item: str) -> JsonObject:
-    """Return the schema of an event whose state is the component ``item``."""
+def describe_events(item: str) -> JsonObject:
+    """Return the media type object of a stream of events whose state is the component ``item``.
+
+    OpenAPI has a keyword for the items of a stream, `itemSchema`, only since version 3.2.
+    """
+    return {"schema": {"type": "string"}, "x-item-schema": _build_event_schema(item)}
+
+
+def _build_event_schema(item: str) -> JsonObject:
     return {
         "type": "object",
         "required": ["event", "data"],
@@ -78,7 +85,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
             "description": "Events until the job has ended: `state` (the job as in a list) first and at each change of "
             "its state, and `progress` in between. The event of the final state is the last one, or `removed` if the "
             "job is removed before its end was sent.",
-            "content": {"text/event-stream": {"itemSchema": build_event_schema("JobListItem")}},
+            "content": {"text/event-stream": describe_events("JobListItem")},
         },
         204: {"description": "The client already has the event of the final state and need not reconnect."},
         **problem_details.describe_responses(e404=NO_JOB, e503="Too many clients of the tenant are listening."),

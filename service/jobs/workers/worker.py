@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import importlib
 import os
+import sys
 import threading
 import time
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -37,6 +40,10 @@ queued again or has ended."""
 
 LIBRARIES_MB = 400
 """Memory for code that solvers load after the start (convex optimization, kernels), added to a job's limit, MiB."""
+
+LOADING_NICENESS = 5
+"""Niceness of the thread that loads the kernels of all kinds after the start. It takes ten seconds of processor time in
+each worker, while a document, a drawing or an analysis that a client waits for needs one or two."""
 
 log = structlog.get_logger(__name__)
 
@@ -89,7 +96,15 @@ def start(settings: WorkerSettings, solving: Solving) -> None:
     _post = _Post(store, progress, settings, solving, slices, first_use)
     store.ping()
     # In parallel with the first jobs, which may run a little slower; but the service is ready seconds sooner.
-    threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
+    threading.Thread(target=_load_rest, args=(dispatch.warm_up_rest,), name="warm-up", daemon=True).start()
+
+
+def _load_rest(load: Callable[[], None]) -> None:
+    """Load the kernels of all other kinds, after what the first requests to the server wait for."""
+    if sys.platform == "linux":  # elsewhere threads have no priority of their own
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), LOADING_NICENESS)
+    load()
 
 
 def report_pid() -> int:

@@ -47,7 +47,13 @@ from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
 from synthesis.model.design_interface import AnyDesign
 from synthesis.model.dimension import Dimension
-from synthesis.model.linkage.answer import CouplerPoint, FourbarMechanism, LinkageDesign, SixbarMechanism
+from synthesis.model.linkage.answer import (
+    CouplerPoint,
+    FourbarMechanism,
+    LinkageDesign,
+    MultiloopMechanism,
+    SixbarMechanism,
+)
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
 from synthesis.model.problem import ProblemBase
 
@@ -85,7 +91,7 @@ TYPE_NAMES = {
 }
 """Names of mechanism types on a sheet."""
 
-GENERATOR_NAMES = {**SIXBAR_NAMES, "fourbar": "Fourbar", "slider_crank": "Slider-crank"}
+GENERATOR_NAMES = {**SIXBAR_NAMES, "fourbar": "Fourbar", "slider_crank": "Slider-crank", "eightbar": "Eightbar"}
 """First words of a function generator's title."""
 
 STROKE_NAMES = TYPE_NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
@@ -200,7 +206,7 @@ def make_function(design: FunctionDesign, problem: FunctionProblem, linkage: Dri
     ]
     mechanism = design.mechanism
     more = [("offset", format_length(mechanism.offset))] if mechanism.type == "slider_crank" else []
-    if not isinstance(mechanism, SixbarMechanism):
+    if not isinstance(mechanism, MultiloopMechanism):
         more.append(("assembly", mechanism.assembly))
     name = f"{GENERATOR_NAMES[mechanism.type]} function generator"
     return Content(

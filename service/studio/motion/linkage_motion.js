@@ -101,6 +101,7 @@ export class LinkageMotion {
     this.gauge = motion.transmission_angle?.some((one) => one !== null)
       ? new AngleGauge(t`Transmission angle`, motion.transmission_angle, {
           limit: problem.constraints?.min_transmission_angle,
+          measured: motion.min_transmission_angle,
           used: isPartialRange(design) ? design.metrics?.min_transmission_angle : null,
         })
       : null;

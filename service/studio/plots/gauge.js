@@ -27,13 +27,17 @@ export function formatDegrees(angle) {
 export class AngleGauge {
   /**
    * @param {string} title @param {(number | null)[]} series over the motion
-   * @param {{limit: number | null | undefined, used?: number | null, atMost?: boolean}} bound which the angle keeps
-   *   above,
-   *   or below, and its extreme in the range that is used, where that is not the whole motion
+   * @param {{
+   *   limit: number | null | undefined,
+   *   measured?: number | null,
+   *   used?: number | null,
+   *   atMost?: boolean,
+   * }} bound which the angle keeps above, or below; its extreme over the whole motion, between the samples too, if it
+   *   was measured; and its extreme in the range that is used, where that is not the whole motion
    */
-  constructor(title, series, { limit, used, atMost = false }) {
+  constructor(title, series, { limit, measured, used, atMost = false }) {
     const known = /** @type {number[]} */ (series.filter((one) => one !== null));
-    const whole = atMost ? Math.max(...known) : Math.min(...known);
+    const whole = measured ?? (atMost ? Math.max(...known) : Math.min(...known));
     const extreme = used ?? whole;
     const told = atMost ? t`maximum ${formatDegrees(extreme)}` : t`minimum ${formatDegrees(extreme)}`;
     const partly = Math.abs(whole - extreme) > 0.5;

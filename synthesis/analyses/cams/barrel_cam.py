@@ -14,7 +14,7 @@ from kinematics.cam.finished.barrel_contact import UnrolledWall
 from kinematics.errors import DimensionError
 from kinematics.message import compose
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
-from synthesis.analyses.cams.cam import MAX_EFFORT, FollowerSeries, ForceSeries, Load, compute_force_series
+from synthesis.analyses.cams.cam import MAX_EFFORT, CamForceSeries, FollowerSeries, Load, compute_force_series
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
 from synthesis.model.json_object import JsonObject
@@ -113,7 +113,7 @@ class BarrelCamAnalysis(DrivenAnalysis):
         description="Play between the walls along the axis; negative if the roller does not fit."
     )
     pressure_angle: list[float | None] = Field(description="Magnitude, degrees.")
-    forces: ForceSeries | None
+    forces: CamForceSeries | None
 
 
 FAMILY = Family(BarrelCamAnalysisRequest, BarrelCamAnalysis)

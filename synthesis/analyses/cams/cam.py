@@ -271,7 +271,7 @@ class CurvePoints(Answer):
     y: list[float | None]
 
 
-class ForceSeries(Answer):
+class CamForceSeries(Answer):
     """Forces of the load over the positions."""
 
     along: list[float | None] = Field(
@@ -326,7 +326,7 @@ class CamAnalysis(DrivenAnalysis):
     radius_of_curvature: list[float | None] = Field(
         description="Radius of curvature of the profile at the contact, positive if convex."
     )
-    forces: ForceSeries | None
+    forces: CamForceSeries | None
     response: ResponseSeries | None
     cutter_path: CutterPath | None
     profile: ProfileFacts

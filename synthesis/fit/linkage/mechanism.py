@@ -29,7 +29,7 @@ def build_fitted_linkage(
     links = {link: tuple(names[pin] for pin in pins) for link, pins in topology.links.items()}
     links[topology.body] += ("P",)
     if kind == "eightbar":
-        made: SixbarMechanism | EightbarMechanism = build_eightbar(joints, links)
+        made: SixbarMechanism | EightbarMechanism = build_eightbar(joints, links, body_angle=body_angle)
     else:
         made = build_sixbar(kind, joints, links, body_angle=body_angle)
     # Coinciding pins cannot be manufactured, nor driven reliably.

@@ -259,6 +259,14 @@ EIGHTBAR_DYAD_COUNT = 3
 
 
 @cache
+def list_generators(kind: str) -> tuple[Topology, ...]:
+    """Return the topologies of a type of function generator: one of :data:`FUNCTION_SIXBARS`, or ``eightbar``."""
+    if kind == "eightbar":
+        return tuple(build_topology(chain, traces=False) for chain in _list_dyads(EIGHTBAR_DYAD_COUNT, grounded=True))
+    return (FUNCTION_SIXBARS[kind],)
+
+
+@cache
 def list_forms(kind: str, *, guides: bool = False) -> tuple[Topology, ...]:
     """Return the topologies of a type of linkage: a sixbar of :data:`SIXBAR_DYADS`, ``stephenson_2`` or ``eightbar``.
 
@@ -274,6 +282,11 @@ def list_forms(kind: str, *, guides: bool = False) -> tuple[Topology, ...]:
 
 def list_chains(dyad_count: int, *, guides: bool = False) -> list[Topology]:
     """Return all topologies of a number of dyads in which every dyad moves the traced point."""
+    return [build_topology(chain, guides=guides) for chain in _list_dyads(dyad_count, grounded=False)]
+
+
+def _list_dyads(dyad_count: int, *, grounded: bool) -> list[Dyads]:
+    """Return all chains in which every dyad moves the last one, whose second link is on the ground if ``grounded``."""
     chains: list[Dyads] = [(FIRST_DYAD,)]
     for number in range(2, dyad_count + 1):
         last, links = number == dyad_count, range(2 * number)
@@ -283,9 +296,9 @@ def list_chains(dyad_count: int, *, guides: bool = False) -> list[Topology]:
             for chain in chains
             for i in links
             for j in links
-            if i != j and (i != GROUND if last else i < j)
+            if i != j and ((i != GROUND and (not grounded or j == GROUND)) if last else i < j)
         ]
-    return [build_topology(_ground_second(chain), guides=guides) for chain in chains if _moves_point(chain)]
+    return [_ground_second(chain) for chain in chains if _moves_last(chain)]
 
 
 def _ground_second(chain: Dyads) -> Dyads:
@@ -301,8 +314,8 @@ def _ground_second(chain: Dyads) -> Dyads:
     return tuple(renumbered)
 
 
-def _moves_point(chain: Dyads) -> bool:
-    """Return whether every dyad is between the traced point and the crank."""
+def _moves_last(chain: Dyads) -> bool:
+    """Return whether every dyad is between the last one and the crank."""
     needed, waiting = set[int](), [len(chain)]
     while waiting:
         number = waiting.pop()

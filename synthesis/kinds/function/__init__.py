@@ -39,7 +39,7 @@ def _list_warm_up_problems() -> list[JsonObject]:
 
 def _is_short(problem: FunctionProblem) -> bool:
     """Return whether a job is short: precision points on fourbars are solved directly, everything else by search."""
-    return problem.aim == "precision" and not problem.sixbars
+    return problem.aim == "precision" and not (problem.sixbars or problem.has_eightbars)
 
 
 KIND = Kind(

@@ -13,6 +13,7 @@ from synthesis.model.linkage.answer import (
     EXACT_FIELD,
     LAYOUT_FIELD,
     PEAKS_FIELD,
+    EightbarMechanism,
     ExactDesign,
     FourbarMechanism,
     Layout,
@@ -23,7 +24,9 @@ from synthesis.model.linkage.answer import (
 )
 from synthesis.model.manufacture.answer import MANUFACTURE_FIELD, ManufactureReport
 
-FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism | SixbarMechanism, Discriminator("type")]
+FunctionMechanism = Annotated[
+    FourbarMechanism | SliderCrankMechanism | SixbarMechanism | EightbarMechanism, Discriminator("type")
+]
 
 
 class InputDial(Answer):

@@ -25,8 +25,8 @@ function-too-many-sixbar-points = höchstens { $count } Punkte können exakt erf
 function-slider-range-missing = der Bereich eines Schiebers bestimmt die Größe des Getriebes und muss angegeben werden
 function-slider-scale-missing = muss angegeben werden: die Skala eines Schiebers ändert nur die Größe des Getriebes
 function-nine-pairs-need-it = muss angegeben werden, weil neun Wertepaare nur dann endlich viele Sechsgelenke zulassen
-function-sixbar-output-rotates = der Abtrieb von Sechsgelenken dreht; sie aus mechanisms entfernen
-function-zeros-need-fourbar = werden von der Gestellgeraden eines Viergelenks aus gemessen; für Sechsgelenke offen lassen
+function-sixbar-output-rotates = der Abtrieb von Getrieben mit sechs und mehr Gliedern dreht; sie aus mechanisms entfernen
+function-zeros-need-fourbar = werden von der Gestellgeraden eines Viergelenks aus gemessen; für Getriebe mit mehr Gliedern offen lassen
 function-slider-crank-not-alone = slider_crank hat als Abtrieb eine Länge, alle anderen Arten haben einen Winkel: allein aufführen und auch mechanism darauf setzen
 
 ## Fehler einer mathematischen Funktion; $function ist ihr Name in der Anfrage.
@@ -60,15 +60,21 @@ function-starts = { $count ->
     }
 function-improving-start = Startwert { $number } von { $count }
 function-improving-candidate = Kandidat { $number }
-function-sixbars-of-type = { $count ->
-        [one] { $count } Sechsgelenk der Art { $type }
-       *[other] { $count } Sechsgelenke der Art { $type }
+function-linkages-of-type = { $type ->
+        [eightbar] { $count ->
+            [one] { $count } achtgliedriges Getriebe
+           *[other] { $count } achtgliedrige Getriebe
+        }
+       *[other] { $count ->
+            [one] { $count } Sechsgelenk der Art { $type }
+           *[other] { $count } Sechsgelenke der Art { $type }
+        }
     }
-function-following-sixbars = die besten von { $count } Sechsgelenken der Art { $type } werden verfolgt
-function-improving-sixbars = die besten von { $count } Sechsgelenken der Art { $type } werden verbessert
+function-following-linkages = { $linkages }: die besten werden verfolgt
+function-improving-linkages = { $linkages }: die besten werden verbessert
 function-paths-followed = { $done } von { $count } Wegen verfolgt
 function-paths-to-nine-followed = { $done } von { $count } Wegen zu neun der Wertepaare verfolgt
-function-verifying-best-sixbars = die besten von { $count } Sechsgelenken werden geprüft
+function-verifying-best-linkages = die besten von { $count } Getrieben werden geprüft
 function-verifying = Prüfung läuft
 function-verified = geprüft
 
@@ -146,48 +152,57 @@ function-many-watts-meet-pairs =
         [nine] die neun Wertepaare
        *[more] neun der Wertepaare
     } wurden berechnet; mindestens { $met } davon erfüllen alle Wertepaare auf ein Millionstel Grad in einer Einbaulage.
-function-no-sixbar-passes =
-    { $sampled ->
-        [one] { $sampled } Sechsgelenk wurde
-       *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen; kein gefundener Entwurf erfüllt alle Bedingungen.
+function-linkages-sampled = { $family ->
+        [eightbar] { $sampled ->
+            [one] { $sampled } achtgliedriges Getriebe wurde zufällig gezogen
+           *[other] { $sampled } achtgliedrige Getriebe wurden zufällig gezogen
+        }
+       *[sixbar] { $sampled ->
+            [one] { $sampled } Sechsgelenk wurde zufällig gezogen
+           *[other] { $sampled } Sechsgelenke wurden zufällig gezogen
+        }
+    }
+function-no-linkage-passes = { $effort }; kein gefundener Entwurf erfüllt alle Bedingungen.
 function-nothing-proved = Das beweist nicht, dass es keinen gibt.
-function-sixbars-meet-pairs =
-    { $sampled ->
-        [one] { $sampled } Sechsgelenk wurde
-       *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen; { $count ->
+function-linkages-meet-pairs =
+    { $effort }; { $count ->
         [one] { $count } Entwurf erfüllt
        *[other] { $count } verschiedene Entwürfe erfüllen
     } alle Wertepaare.
-function-sixbar-with-least-rms =
-    { $sampled ->
-        [one] { $sampled } Sechsgelenk wurde
-       *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen. Der beste gefundene Entwurf hat einen mittleren Strukturfehler (RMS) von { $rms }° (Maximum { $maximum }°); es ist ein Sechsgelenk nach { $type ->
-        [watt_2] Watt II
-        [stephenson_2] Stephenson II
-       *[stephenson_3] Stephenson III
-    }. Es kann ein besseres Getriebe geben.
-function-sixbar-with-least-maximum =
-    { $sampled ->
-        [one] { $sampled } Sechsgelenk wurde
-       *[other] { $sampled } Sechsgelenke wurden
-    } zufällig gezogen. Der beste gefundene Entwurf hat einen größten Strukturfehler von { $maximum }°; es ist ein Sechsgelenk nach { $type ->
-        [watt_2] Watt II
-        [stephenson_2] Stephenson II
-       *[stephenson_3] Stephenson III
-    }. Es kann ein besseres Getriebe geben.
+function-linkage-type = { $type ->
+        [watt_2] ein Sechsgelenk nach Watt II
+        [stephenson_2] ein Sechsgelenk nach Stephenson II
+        [eightbar] ein achtgliedriges Getriebe
+       *[stephenson_3] ein Sechsgelenk nach Stephenson III
+    }
+function-linkage-with-least-rms =
+    { $effort }. Der beste gefundene Entwurf hat einen mittleren Strukturfehler (RMS) von { $rms }° (Maximum { $maximum }°);
+    es ist { $type }. Es kann ein besseres Getriebe geben.
+function-linkage-with-least-maximum =
+    { $effort }. Der beste gefundene Entwurf hat einen größten Strukturfehler von { $maximum }°; es ist { $type }. Es kann
+    ein besseres Getriebe geben.
 
-## Vergleich von Viergelenken mit Sechsgelenken
+## Vergleich von Viergelenken mit Sechsgelenken und von diesen mit achtgliedrigen Getrieben
 
 function-only-sixbars-found = Es wurde kein Viergelenk gefunden, nur Sechsgelenke.
 function-no-linkage-found = Es wurde weder ein Viergelenk noch ein Sechsgelenk gefunden.
 function-no-smaller-error = Kein gefundenes Sechsgelenk hat einen deutlich kleineren Fehler als das beste Viergelenk.
 function-no-better-transmission = Kein gefundenes Sechsgelenk hat einen deutlich größeren Übertragungswinkel als das beste Viergelenk.
-# Auf diese beiden folgt ein Punkt oder der Rest des Satzes: ob die Sechsgelenke aufgeführt sind.
+function-only-eightbars-found = Es wurde kein Getriebe mit weniger Gliedern gefunden, nur achtgliedrige.
+function-no-eightbar-found = Es wurde weder ein achtgliedriges Getriebe noch eines mit weniger Gliedern gefunden.
+function-no-eightbar-with-smaller-error =
+    Kein gefundenes achtgliedriges Getriebe hat einen deutlich kleineren Fehler als das beste mit weniger Gliedern.
+function-no-eightbar-transmits-better =
+    Kein gefundenes achtgliedriges Getriebe hat einen deutlich größeren Übertragungswinkel als das beste mit weniger
+    Gliedern.
+# Auf diese vier folgt ein Punkt oder der Rest des Satzes: ob die Getriebe mit mehr Gliedern aufgeführt sind.
 function-sixbars-transmit-better = Der kleinste Übertragungswinkel des besten Viergelenks beträgt nur { $angle }°; Sechsgelenke übertreffen es
 function-sixbars-reduce-error = Sechsgelenke senken den Fehler auf { $share } % des Fehlers des besten Viergelenks
+function-eightbars-transmit-better =
+    Der kleinste Übertragungswinkel des besten Getriebes mit weniger Gliedern beträgt nur { $angle }°; achtgliedrige
+    übertreffen es
+function-eightbars-reduce-error =
+    Achtgliedrige Getriebe senken den Fehler auf { $share } % des Fehlers des besten Getriebes mit weniger Gliedern
 
 ## Fortschritt
 

@@ -25,8 +25,8 @@ function-too-many-sixbar-points = at most { $count } points can be exact; reques
 function-slider-range-missing = a slider's range sets the size of the linkage and must be given
 function-slider-scale-missing = must be given: a slider's scale only changes the linkage's size
 function-nine-pairs-need-it = must be given, because nine pairs leave finitely many sixbars only then
-function-sixbar-output-rotates = the output of sixbars rotates; remove them from mechanisms
-function-zeros-need-fourbar = are measured from the ground line of a fourbar; leave them open for sixbars
+function-sixbar-output-rotates = the output of sixbars and eightbars rotates; remove them from mechanisms
+function-zeros-need-fourbar = are measured from the ground line of a fourbar; leave them open for sixbars and eightbars
 function-slider-crank-not-alone = slider_crank has a length as output, all other types an angle: list it alone, and set mechanism to it too
 
 ## Faults of a mathematical function; $function is its name in the request.
@@ -63,15 +63,21 @@ function-starts = { $count ->
     }
 function-improving-start = start { $number } of { $count }
 function-improving-candidate = candidate { $number }
-function-sixbars-of-type = { $count ->
-        [one] { $count } sixbar of type { $type }
-       *[other] { $count } sixbars of type { $type }
+function-linkages-of-type = { $type ->
+        [eightbar] { $count ->
+            [one] { $count } eightbar
+           *[other] { $count } eightbars
+        }
+       *[other] { $count ->
+            [one] { $count } sixbar of type { $type }
+           *[other] { $count } sixbars of type { $type }
+        }
     }
-function-following-sixbars = following the best of { $count } sixbars of type { $type }
-function-improving-sixbars = improving the best of { $count } sixbars of type { $type }
+function-following-linkages = following the best of { $linkages }
+function-improving-linkages = improving the best of { $linkages }
 function-paths-followed = { $done } of { $count } paths followed
 function-paths-to-nine-followed = { $done } of { $count } paths to nine of the pairs followed
-function-verifying-best-sixbars = verifying the best of { $count } sixbars
+function-verifying-best-linkages = verifying the best of { $count } linkages
 function-verifying = verifying
 function-verified = verified
 
@@ -152,48 +158,53 @@ function-many-watts-meet-pairs =
         [nine] the nine pairs
        *[more] nine of the pairs
     }, real and complex, were computed; at least { $met } of them meet all pairs to a millionth of a degree in one assembly.
-function-no-sixbar-passes =
-    { $sampled ->
-        [one] { $sampled } sixbar was
-       *[other] { $sampled } sixbars were
-    } sampled; no design found satisfies all constraints.
+function-linkages-sampled = { $family ->
+        [eightbar] { $sampled ->
+            [one] { $sampled } eightbar was sampled
+           *[other] { $sampled } eightbars were sampled
+        }
+       *[sixbar] { $sampled ->
+            [one] { $sampled } sixbar was sampled
+           *[other] { $sampled } sixbars were sampled
+        }
+    }
+function-no-linkage-passes = { $effort }; no design found satisfies all constraints.
 function-nothing-proved = This does not prove that none exists.
-function-sixbars-meet-pairs =
-    { $sampled ->
-        [one] { $sampled } sixbar was
-       *[other] { $sampled } sixbars were
-    } sampled; { $count ->
+function-linkages-meet-pairs =
+    { $effort }; { $count ->
         [one] { $count } design meets
        *[other] { $count } distinct designs meet
     } all pairs.
-function-sixbar-with-least-rms =
-    { $sampled ->
-        [one] { $sampled } sixbar was
-       *[other] { $sampled } sixbars were
-    } sampled. Smallest root-mean-square structural error found: { $rms }° (maximum { $maximum }°), by a { $type ->
-        [watt_2] Watt II
-        [stephenson_2] Stephenson II
-       *[stephenson_3] Stephenson III
-    } sixbar. A better linkage may exist.
-function-sixbar-with-least-maximum =
-    { $sampled ->
-        [one] { $sampled } sixbar was
-       *[other] { $sampled } sixbars were
-    } sampled. Smallest maximum structural error found: { $maximum }°, by a { $type ->
-        [watt_2] Watt II
-        [stephenson_2] Stephenson II
-       *[stephenson_3] Stephenson III
-    } sixbar. A better linkage may exist.
+function-linkage-type = { $type ->
+        [watt_2] a Watt II sixbar
+        [stephenson_2] a Stephenson II sixbar
+        [eightbar] an eightbar
+       *[stephenson_3] a Stephenson III sixbar
+    }
+function-linkage-with-least-rms =
+    { $effort }. Smallest root-mean-square structural error found: { $rms }° (maximum { $maximum }°), by { $type }. A better
+    linkage may exist.
+function-linkage-with-least-maximum =
+    { $effort }. Smallest maximum structural error found: { $maximum }°, by { $type }. A better linkage may exist.
 
-## Comparison of fourbars with sixbars
+## Comparison of fourbars with sixbars, and of these with eightbars
 
 function-only-sixbars-found = No fourbar was found, only sixbars.
 function-no-linkage-found = Neither a fourbar nor a sixbar was found.
 function-no-smaller-error = No sixbar found clearly improves on the best fourbar's error.
 function-no-better-transmission = No sixbar found clearly improves on the best fourbar's transmission angle.
-# A full stop follows these two, or the rest of the sentence: whether the sixbars are listed.
+function-only-eightbars-found = No linkage with fewer links was found, only eightbars.
+function-no-eightbar-found = Neither an eightbar nor a linkage with fewer links was found.
+function-no-eightbar-with-smaller-error = No eightbar found clearly improves on the error of the best linkage with fewer links.
+function-no-eightbar-transmits-better =
+    No eightbar found clearly improves on the transmission angle of the best linkage with fewer links.
+# A full stop follows these four, or the rest of the sentence: whether the linkages with more links are listed.
 function-sixbars-transmit-better = The best fourbar has a minimum transmission angle of only { $angle }°; sixbars exceed it
 function-sixbars-reduce-error = Sixbars reduce the error to { $share } % of the best fourbar's
+function-eightbars-transmit-better =
+    The best linkage with fewer links has a minimum transmission angle of only { $angle }°; eightbars exceed it
+function-eightbars-reduce-error =
+    Eightbars reduce the error to { $share } % of that of the best linkage with fewer links
 
 ## Progress
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Annotated, Any, Literal
 
@@ -15,8 +15,10 @@ from kinematics.arrays import Real
 from kinematics.message import compose
 from synthesis.kinds.function.statement.functions import FunctionStatement
 from synthesis.kinds.function.statement.mechanism_types import (
+    MULTILOOP_TYPES,
     SIXBARS,
     Mechanisms,
+    Multiloop,
     Sixbar,
     check_types,
     list_unsupported,
@@ -55,7 +57,8 @@ BASE_PAIR_COUNT = 3
 MAX_EXACT_PAIRS = 7
 
 MAX_SIXBAR_PAIRS = 8
-"""Maximum number of pairs that the sixbar search meets exactly. Watt II has nine parameters, the others eleven."""
+"""Maximum number of pairs that the search of sixbars and eightbars meets exactly. Watt II has nine parameters, other
+sixbars eleven, eightbars more."""
 
 UNIT_SCALE_TOLERANCE = 1e-7
 """Tolerance for a scale of 1, which leaves the pairs unchanged."""
@@ -217,8 +220,8 @@ class FunctionProblem(LinkageProblem):
     mechanism: Literal["fourbar", "slider_crank"] = "fourbar"
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="Types of linkage to search. auto: fourbars, and sixbars if no fourbar is feasible and accurate. "
-        "Omitted: the type given by `mechanism`.",
+        description="Types of linkage to search. auto: fourbars, sixbars if no fourbar is feasible and accurate, and "
+        "eightbars if all of these miss the function by far. Omitted: the type given by `mechanism`.",
     )
     criterion: Literal["precision", "least_squares", "minimax"] | None = Field(
         default=None,
@@ -254,18 +257,23 @@ class FunctionProblem(LinkageProblem):
     @property
     def simple_problem(self) -> FunctionProblem | None:
         """The same problem restricted to the fourbars or slider-cranks in ``mechanisms``; None if there are none."""
-        return None if self.only_sixbars else self.model_copy(update={"mechanisms": None})
+        return None if self.only_multiloop else self.model_copy(update={"mechanisms": None})
 
     @property
-    def sixbar_problem(self) -> FunctionProblem:
-        """The same problem restricted to the requested sixbars, with the same criterion and open zeros."""
-        alone = {"mechanisms": list(self.sixbars), "criterion": self.aim, "zeros": None}
-        return self.model_copy(update=alone)
+    def has_eightbars(self) -> bool:
+        """Whether eightbars may be searched; for ``auto`` only for approximations, which others may miss by far."""
+        if self.mechanisms == "auto" and self.aim == "precision":
+            return False
+        return bool(select_searched_types(self.mechanisms, ("eightbar",), list_unsupported(self)))
+
+    def restrict_to(self, types: Sequence[Multiloop]) -> FunctionProblem:
+        """Return the same problem for sixbars or eightbars alone, with the same criterion and open zeros."""
+        return self.model_copy(update={"mechanisms": list(types), "criterion": self.aim, "zeros": None})
 
     @property
-    def only_sixbars(self) -> bool:
-        """Whether only sixbars are requested."""
-        return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(SIXBARS)
+    def only_multiloop(self) -> bool:
+        """Whether only sixbars and eightbars are requested."""
+        return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(MULTILOOP_TYPES)
 
     @property
     def has_given_zeros(self) -> bool:
@@ -358,7 +366,7 @@ class FunctionProblem(LinkageProblem):
     def from_ground(self) -> bool:
         """Whether pairs are first read as angles of a link, or its extension, from the ground line."""
         few = self.pairs is not None and len(self.pairs) <= BASE_PAIR_COUNT
-        return self.zeros == "auto" and few and not self.only_sixbars
+        return self.zeros == "auto" and few and not self.only_multiloop
 
     @property
     def zero_choice(self) -> tuple[float | None, float | None]:
@@ -370,8 +378,8 @@ class FunctionProblem(LinkageProblem):
     @property
     def max_exact_pairs(self) -> int:
         """Maximum number of pairs that can be met exactly: the number of open proportions, zeros and scales."""
-        if self.only_sixbars:
-            return WATT_2_PAIR_COUNT if self.sixbars == ("watt_2",) else MAX_SIXBAR_PAIRS
+        if self.only_multiloop:
+            return WATT_2_PAIR_COUNT if self.only_watt_2 else MAX_SIXBAR_PAIRS
         zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
         if self.function is not None:
             free = [self.input_range, self.output_range].count(None)
@@ -397,7 +405,7 @@ class FunctionProblem(LinkageProblem):
     @property
     def only_watt_2(self) -> bool:
         """Whether only Watt II sixbars are requested."""
-        return self.only_sixbars and self.sixbars == ("watt_2",)
+        return self.only_multiloop and self.sixbars == ("watt_2",) and not self.has_eightbars
 
     def span(self, side: Literal["input", "output"]) -> float | None:
         """Return the signed range of a side, degrees or length units; None if it is open."""
@@ -416,7 +424,7 @@ class FunctionProblem(LinkageProblem):
         """Scales of pairs; None for an open one."""
         if self.scales is not None:
             return self.scales.input, self.scales.output
-        if self.aim != "precision" or self.pairs is None or self.only_sixbars:
+        if self.aim != "precision" or self.pairs is None or self.only_multiloop:
             return 1.0, 1.0
         zeros = sum(zero is None for zero in self.zero_choice)
         # Each further pair needs one more open parameter; the output's scale is opened first.
@@ -528,7 +536,7 @@ class FunctionProblem(LinkageProblem):
         if max(moved) - min(moved) <= INPUT_TOLERANCE * (max(map(abs, moved)) if self.slides else 1.0):
             yield Contradiction("/pairs", compose("function-output-rests"))
         if self.aim == "precision" and len(pairs) > self.max_exact_pairs:
-            reason = "function-too-many-sixbar-pairs" if self.only_sixbars else "function-too-many-pairs"
+            reason = "function-too-many-sixbar-pairs" if self.only_multiloop else "function-too-many-pairs"
             yield Contradiction("/pairs", compose(reason, count=self.max_exact_pairs))
 
     def _check_ranges(self) -> Iterator[Contradiction]:
@@ -546,7 +554,7 @@ class FunctionProblem(LinkageProblem):
         if self.slides and self.output_range is None:
             yield Contradiction("/output_range", compose("function-slider-range-missing"))
         if self.aim == "precision" and (self.precision_points or 0) > self.max_exact_pairs:
-            reason = "function-too-many-sixbar-points" if self.only_sixbars else "function-too-many-points"
+            reason = "function-too-many-sixbar-points" if self.only_multiloop else "function-too-many-points"
             yield Contradiction("/precision_points", compose(reason, count=self.max_exact_pairs))
 
     def _check_zeros_and_scales(self) -> Iterator[Contradiction]:

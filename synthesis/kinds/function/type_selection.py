@@ -1,15 +1,17 @@
-"""Selection of the linkage type: the simplest type that is accurate enough, or sixbars if no simpler one is.
+"""Selection of the linkage type: the simplest that is accurate enough, sixbars or eightbars if no simpler one is.
 
 A fourbar that satisfies all constraints is sufficient if its minimum transmission angle reaches the client's limit (or
 :data:`~synthesis.results.simplest_type.SOUND_TRANSMISSION_ANGLE` degrees without one) and its structural error is at
 most :data:`MAX_SUFFICIENT_ERROR` of the output's range. Otherwise sixbars are searched; they are listed after it if
-they have at most half its error, or replace it if it transmits badly.
+they have at most half its error, or replace it if it transmits badly. Eightbars follow in the same way if the client
+names them, or for ``auto`` if all other linkages miss the function by more than :data:`MAX_SIMPLER_ERROR`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,9 +20,9 @@ from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.task import make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.ranking import get_error, rank_by_error
-from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
+from synthesis.kinds.function.sixbar.mechanism import build_function_linkage
 from synthesis.kinds.function.sixbar.solver import SixbarSearch
-from synthesis.kinds.function.statement.mechanism_types import SIXBARS, list_unsupported
+from synthesis.kinds.function.statement.mechanism_types import SIXBARS, Multiloop, list_unsupported
 from synthesis.kinds.function.verification.verify import verify_function
 from synthesis.kinds.function.watt_2_nine_pairs import solve_nine_pairs
 from synthesis.model.kind import Progress, scale_progress
@@ -44,11 +46,45 @@ from synthesis.results.simplest_type import (
 
 Solve = Callable[[FunctionProblem, Progress], FunctionResult]
 
+
+class _Remarks(NamedTuple):
+    """Messages that compare linkages with those of fewer links, by the outcome."""
+
+    only_found: str
+    none_found: str
+    no_smaller_error: str
+    no_better_transmission: str
+    transmit_better: str
+    reduce_error: str
+
+
+_SIXBAR_REMARKS = _Remarks(
+    "function-only-sixbars-found",
+    "function-no-linkage-found",
+    "function-no-smaller-error",
+    "function-no-better-transmission",
+    "function-sixbars-transmit-better",
+    "function-sixbars-reduce-error",
+)
+
+_EIGHTBAR_REMARKS = _Remarks(
+    "function-only-eightbars-found",
+    "function-no-eightbar-found",
+    "function-no-eightbar-with-smaller-error",
+    "function-no-eightbar-transmits-better",
+    "function-eightbars-transmit-better",
+    "function-eightbars-reduce-error",
+)
+
 MAX_SUFFICIENT_ERROR = 2e-4
 """Maximum error of a fourbar, as a share of the output's range, for which sixbars are not searched: 0.01° of 50°."""
 
+MAX_SIMPLER_ERROR = 0.01
+"""Error of the best simpler linkage, as a share of the output's range, below which ``auto`` searches no eightbars: two
+more links must pay for themselves, and a client can ask for them."""
+
 ATTEMPTS_PER_DESIGN = 6
-"""Maximum number of verified sixbars per requested design."""
+"""Maximum number of verified linkages per requested design."""
 
 REASONS = DEFECT_REASONS | LENGTH_REASONS | {"covers_range": "branch_defect", "dials": "reversed_link"}
 """Rejection reason by failed check; other checks use their own name."""
@@ -66,6 +102,24 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
     progress : callable
         Progress callback.
     """
+    if not problem.has_eightbars:
+        return _prefer_simple(problem, simple, progress)
+    fewer = None if problem.mechanisms == ["eightbar"] else partial(_prefer_simple, problem, simple)
+    # Without a criterion the number of pairs and the types decide, so that the restricted problem names it.
+    judged = problem.simple_problem or problem.restrict_to(("eightbar",))
+    error = MAX_SIMPLER_ERROR if problem.mechanisms == "auto" else MAX_SUFFICIENT_ERROR
+    answer: FunctionResult = prefer_simplest(
+        fewer,
+        lambda part: solve_linkages(problem.restrict_to(("eightbar",)), ("eightbar",), part),
+        lambda design: has_good_transmission(problem, design) and _is_accurate(judged, design, error),
+        partial(merge_type_results, judged, remarks=_EIGHTBAR_REMARKS),
+        progress,
+    )
+    return answer
+
+
+def _prefer_simple(problem: FunctionProblem, simple: Solve, progress: Progress) -> FunctionResult:
+    """Solve for fourbars or slider-cranks, and for sixbars if none of these is good enough."""
     part = problem.simple_problem
     answer: FunctionResult = prefer_simplest(
         None if part is None else partial(simple, part),
@@ -81,7 +135,8 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
 
 def _solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve for the sixbars that support the given constraints; report the types that do not."""
-    found, remark = solve_sixbars(problem.sixbar_problem, progress), _describe_dropped(problem)
+    found = solve_linkages(problem.restrict_to(problem.sixbars), problem.sixbars, progress)
+    remark = _describe_dropped(problem)
     return found.model_copy(update={"summary": join_messages([found.summary, remark])})
 
 
@@ -92,23 +147,24 @@ def _describe_dropped(problem: FunctionProblem) -> str:
     )
 
 
-def _is_accurate(problem: FunctionProblem, design: FunctionDesign) -> bool:
-    """Return whether a linkage is accurate enough that sixbars are not searched."""
+def _is_accurate(problem: FunctionProblem, design: FunctionDesign, share: float = MAX_SUFFICIENT_ERROR) -> bool:
+    """Return whether the error of a linkage is at most a share of the output's range."""
     # Precision points are met exactly, so accuracy is no criterion.
     if problem.aim == "precision":
         return True
     error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
-    return bool(error <= MAX_SUFFICIENT_ERROR * abs(design.metrics.output_range))
+    # The output of a function that returns, like a sine, is where it began at the end of the range.
+    outputs = [target.output for target in design.targets]
+    return bool(error <= share * abs(design.dials.output.scale) * (max(outputs) - min(outputs)))
 
 
-def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """Solve for sixbars of the requested types, best by the criterion first."""
+def solve_linkages(problem: FunctionProblem, types: Sequence[Multiloop], progress: Progress) -> FunctionResult:
+    """Solve for sixbars or eightbars of some types, best by the criterion first."""
     if problem.determines_watts:
         return solve_nine_pairs(problem, REASONS, progress)
     task = make_function_task(problem)
     search = SixbarSearch(task)
     sifting = CandidateLog[FunctionDesign](problem, REASONS)
-    types = problem.sixbars
     found = []
     for n, name in enumerate(types):
         # A generator for each type, so that the result does not depend on which other types are requested.
@@ -117,28 +173,30 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
             name, rng, scale_progress(progress, 0.9 * n / len(types), 0.9 * (n + 1) / len(types))
         )
     found.sort(key=lambda one: one.error)
-    progress(0.9, compose("function-verifying-best-sixbars", count=search.weighed))
+    progress(0.9, compose("function-verifying-best-linkages", count=search.weighed))
 
-    def verify_sixbar(n: int) -> FunctionDesign | None:
+    def verify_linkage(n: int) -> FunctionDesign | None:
         try:
-            return verify_function(problem, *build_function_sixbar(task, found[n]))
+            return verify_function(problem, *build_function_linkage(task, found[n]))
         except (ValueError, ZeroDivisionError, OverflowError):
             return None  # at a toggle no position can be computed
 
     # Several tries per design, because some fail verification.
     rows = range(min(len(found), ATTEMPTS_PER_DESIGN * problem.max_designs))
-    tried = sifting.verify_candidates(rows, verify_sixbar, enough=problem.max_designs)
+    tried = sifting.verify_candidates(rows, verify_linkage, enough=problem.max_designs)
     sifting.reject(OUTRANKED_REASON, search.weighed - tried)
     progress(1.0, compose("function-verified"))
     return FunctionResult(
         designs=sifting.select_designs(partial(rank_by_error, problem)),
-        search=sifting.build_search("sixbar_search"),
-        summary=join_messages([_describe_result(problem, sifting), search.remark]),
+        search=sifting.build_search("eightbar_search" if "eightbar" in types else "sixbar_search"),
+        summary=join_messages([_describe_result(problem, types, sifting), search.remark]),
     )
 
 
-def merge_type_results(problem: FunctionProblem, simple: FunctionResult, found: FunctionResult) -> FunctionResult:
-    """Merge the results for fourbars and for sixbars."""
+def merge_type_results(
+    problem: FunctionProblem, simple: FunctionResult, found: FunctionResult, *, remarks: _Remarks = _SIXBAR_REMARKS
+) -> FunctionResult:
+    """Merge the results for simpler linkages and for those with more links."""
     order = partial(rank_by_error, problem)
     plain, better = select_passing(simple.designs), select_passing(found.designs)
     sound = [design for design in plain if has_good_transmission(problem, design)]
@@ -146,59 +204,59 @@ def merge_type_results(problem: FunctionProblem, simple: FunctionResult, found: 
     least = min((get_error(problem, design) for design in sound or plain), default=np.inf)
     if sound:
         better = [design for design in better if get_error(problem, design) <= ERROR_RATIO * least]
-    # No usable fourbar: sixbars need only transmit better.
+    # No usable simpler linkage: the others need only transmit better.
     elif plain:
         angle = max(design.metrics.min_transmission_angle for design in plain)
         better = [design for design in better if design.metrics.min_transmission_angle > angle]
     offered = merge_alternatives(problem.max_designs, plain, better, order)
-    sixbars = [design for design in offered if any(design is one for one in better)]
+    others = [design for design in offered if any(design is one for one in better)]
     remark = join_messages(
         [
-            _describe_comparison(problem, sound, plain, sixbars or better),
-            describe_alternatives(problem, len(offered), len(sixbars)) if plain and better else "",
+            _describe_comparison(problem, remarks, sound, plain, others or better),
+            describe_alternatives(problem, len(offered), len(others)) if plain and better else "",
         ],
         "",
     )
-    return merge_results(problem.max_designs, (simple, found), offered, len(sixbars), remark, order)
+    return merge_results(problem.max_designs, (simple, found), offered, len(others), remark, order)
 
 
 def _describe_comparison(
-    problem: FunctionProblem, sound: list[FunctionDesign], plain: list[FunctionDesign], better: list[FunctionDesign]
+    problem: FunctionProblem,
+    remarks: _Remarks,
+    sound: list[FunctionDesign],
+    plain: list[FunctionDesign],
+    better: list[FunctionDesign],
 ) -> str:
     """Describe how the types compare; the sentence is continued by the caller if there are designs of both kinds."""
     if not plain:
-        return compose("function-only-sixbars-found" if better else "function-no-linkage-found")
+        return compose(remarks.only_found if better else remarks.none_found)
     if not better:
-        return compose("function-no-smaller-error" if sound else "function-no-better-transmission")
+        return compose(remarks.no_smaller_error if sound else remarks.no_better_transmission)
     if not sound:
         angle = max(design.metrics.min_transmission_angle for design in plain)
-        return compose("function-sixbars-transmit-better", angle=f"{angle:.1f}")
+        return compose(remarks.transmit_better, angle=f"{angle:.1f}")
     share = min(get_error(problem, one) for one in better) / min(get_error(problem, one) for one in sound)
-    return compose("function-sixbars-reduce-error", share=f"{100.0 * share:.2g}")
+    return compose(remarks.reduce_error, share=f"{100.0 * share:.2g}")
 
 
-def _describe_result(problem: FunctionProblem, sifting: CandidateLog[FunctionDesign]) -> str:
-    sampled = sifting.candidates
+def _describe_result(
+    problem: FunctionProblem, types: Sequence[Multiloop], sifting: CandidateLog[FunctionDesign]
+) -> str:  # fmt: skip
+    family = "eightbar" if "eightbar" in types else "sixbar"
+    effort = compose("function-linkages-sampled", family=family, sampled=sifting.candidates)
     if not sifting.passed:
         return join_messages(
             [
-                compose("function-no-sixbar-passes", sampled=sampled),
+                compose("function-no-linkage-passes", effort=effort),
                 sifting.describe_reasons().strip(),
                 compose("function-nothing-proved"),
             ]
         )
-    best = select_best(sifting.passed, partial(get_error, problem))
-    error = best.structural_error
     if problem.aim == "precision":
-        return compose("function-sixbars-meet-pairs", sampled=sampled, count=len(sifting.passed))
+        return compose("function-linkages-meet-pairs", effort=effort, count=len(sifting.passed))
+    best = select_best(sifting.passed, partial(get_error, problem))
+    error, kind = best.structural_error, compose("function-linkage-type", type=best.mechanism.type)
     if problem.aim == "least_squares":
-        return compose(
-            "function-sixbar-with-least-rms",
-            sampled=sampled,
-            rms=f"{error.rms:.4g}",
-            maximum=f"{error.max:.4g}",
-            type=best.mechanism.type,
-        )
-    return compose(
-        "function-sixbar-with-least-maximum", sampled=sampled, maximum=f"{error.max:.4g}", type=best.mechanism.type
-    )
+        both = {"rms": f"{error.rms:.4g}", "maximum": f"{error.max:.4g}"}
+        return compose("function-linkage-with-least-rms", effort=effort, type=kind, **both)
+    return compose("function-linkage-with-least-maximum", effort=effort, maximum=f"{error.max:.4g}", type=kind)

@@ -25,7 +25,7 @@ from synthesis.kinds.function.nine_pairs.system import SOLUTION_COUNT
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.ranking import rank_by_error
 from synthesis.kinds.function.sixbar.fits import SixbarCandidate, build_fit_task, measure_motion
-from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
+from synthesis.kinds.function.sixbar.mechanism import build_function_linkage
 from synthesis.kinds.function.sixbar.nine_pair_starts import make_sixbar
 from synthesis.kinds.function.sixbar.solver import (
     EXACT_TOLERANCE,
@@ -102,7 +102,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
 
     def verify_sixbar(one: SixbarCandidate) -> FunctionDesign | None:
         try:
-            return verify_function(problem, *build_function_sixbar(task, one))
+            return verify_function(problem, *build_function_linkage(task, one))
         except (ValueError, ZeroDivisionError, OverflowError):
             return None  # at a toggle no position can be computed
 

@@ -57,7 +57,7 @@ def _list_warm_up_problems() -> list[JsonObject]:
 def _is_short(problem: MotionProblem) -> bool:
     """Return whether a job is short: exact positions, fourbars only, no driver dyad, hence no iterative fit."""
     fitted = problem.approximate or problem.driver is not None or problem.slider is not None
-    return not (fitted or problem.sixbars)
+    return not (fitted or problem.sixbars or problem.has_eightbars)
 
 
 KIND = Kind(

@@ -49,6 +49,16 @@ motion-sixbars-examined =
         [one] { $count } Sechsgelenk untersucht
        *[other] { $count } Sechsgelenke untersucht
     }
+motion-eightbars-examined =
+    { $count ->
+        [one] { $count } achtgliedriges Getriebe untersucht
+       *[other] { $count } achtgliedrige Getriebe untersucht
+    }
+motion-verifying-best-eightbars =
+    { $count ->
+        [one] das eine achtgliedrige Getriebe wird geprüft
+       *[other] die besten von { $count } achtgliedrigen Getrieben werden geprüft
+    }
 motion-verifying-best-sixbars =
     { $count ->
         [one] das eine Sechsgelenk wird geprüft
@@ -131,8 +141,8 @@ motion-chain-type-unsupported =
     gilt nur für die Sechsgelenke Watt I, Stephenson I und Stephenson III; eines davon verlangen oder weglassen
 motion-chain-too-short = reicht in Lage { $position } nicht von G bis H₂: Der Abstand ist { $distance } { $unit }
 motion-sixbar-too-many-positions =
-    für Sechsgelenke sind höchstens { $maximum } Lagen möglich; für mehr Lagen Viergelenke verlangen
-motion-not-for-sixbars = gilt nur für Viergelenke; weglassen oder die Sechsgelenke aus mechanisms entfernen
+    für sechs- und achtgliedrige Getriebe sind höchstens { $maximum } Lagen möglich; für mehr Lagen Viergelenke verlangen
+motion-not-for-sixbars = gilt nur für Viergelenke; weglassen oder sechs- und achtgliedrige Getriebe aus mechanisms entfernen
 motion-not-for-stephenson-2 =
     für Sechsgelenke Stephenson II nicht möglich; weglassen oder andere Getriebearten verlangen
 motion-slider-not-listed = eine Seite hat einen Schieber; slider_crank in mechanisms aufnehmen
@@ -384,6 +394,11 @@ motion-sixbars-fitted =
         [one] { $count } Sechsgelenk wurde auf einem Zweig an die Lagen angenähert
        *[other] { $count } Sechsgelenke wurden auf einem Zweig an die Lagen angenähert
     }
+motion-eightbars-fitted =
+    { $count ->
+        [one] { $count } achtgliedriges Getriebe wurde auf einem Zweig an die Lagen angenähert
+       *[other] { $count } achtgliedrige Getriebe wurden auf einem Zweig an die Lagen angenähert
+    }
 motion-sixbars-from-chains =
     { $count ->
         [one] { $count } Sechsgelenk aus Ketten mit zwei führenden Kurbeln wurde bewertet
@@ -418,6 +433,25 @@ motion-sixbars-transmit-better =
 motion-no-sixbar-transmits-better =
     Das beste Viergelenk oder die beste Schubkurbel hat einen kleinsten Übertragungswinkel von { $angle }°, und kein
     gefundenes Sechsgelenk übertrifft ihn.
+motion-only-eightbars-feasible =
+    Kein gefundenes Getriebe mit weniger Gliedern erfüllt alle Bedingungen; achtgliedrige Getriebe erfüllen sie.
+motion-no-eightbar-feasible =
+    Kein gefundenes Getriebe mit weniger Gliedern erfüllt alle Bedingungen; auch kein achtgliedriges.
+motion-only-eightbars-transmit =
+    Kein gefundenes Getriebe mit weniger Gliedern hat einen ausreichenden Übertragungswinkel; achtgliedrige Getriebe
+    haben einen{ $listing }
+motion-eightbars-closer =
+    Das beste Getriebe mit weniger Gliedern hat einen mittleren Restfehler (RMS) von { $error } %; achtgliedrige Getriebe
+    haben höchstens die Hälfte davon{ $listing }
+motion-no-eightbar-closer =
+    Das beste Getriebe mit weniger Gliedern hat einen mittleren Restfehler (RMS) von { $error } %, und kein gefundenes
+    achtgliedriges erreicht die Hälfte davon.
+motion-eightbars-transmit-better =
+    Das beste Getriebe mit weniger Gliedern hat einen kleinsten Übertragungswinkel von { $angle }°; achtgliedrige Getriebe
+    übertreffen ihn{ $listing }
+motion-no-eightbar-transmits-better =
+    Das beste Getriebe mit weniger Gliedern hat einen kleinsten Übertragungswinkel von { $angle }°, und kein gefundenes
+    achtgliedriges übertrifft ihn.
 motion-only-sixbars-exist = Kein Viergelenk und keine Schubkurbel löst die Aufgabe; Sechsgelenke lösen sie.
 motion-simple-types-impossible =
     Kein Viergelenk und keine Schubkurbel löst die Aufgabe, und es wurde kein Sechsgelenk gefunden.

@@ -49,6 +49,16 @@ motion-sixbars-examined =
         [one] { $count } sixbar examined
        *[other] { $count } sixbars examined
     }
+motion-eightbars-examined =
+    { $count ->
+        [one] { $count } eightbar examined
+       *[other] { $count } eightbars examined
+    }
+motion-verifying-best-eightbars =
+    { $count ->
+        [one] verifying the best of { $count } eightbar
+       *[other] verifying the best of { $count } eightbars
+    }
 motion-verifying-best-sixbars =
     { $count ->
         [one] verifying the best of { $count } sixbar
@@ -130,8 +140,8 @@ motion-chain-too-many-positions =
 motion-chain-type-unsupported =
     applies only to Watt I, Stephenson I and Stephenson III sixbars; request one of these, or omit it
 motion-chain-too-short = cannot span G to H₂ at position { $position }: the distance is { $distance } { $unit }
-motion-sixbar-too-many-positions = sixbars support at most { $maximum } positions; request fourbars for more
-motion-not-for-sixbars = applies only to fourbars; omit it, or remove the sixbars from mechanisms
+motion-sixbar-too-many-positions = sixbars and eightbars support at most { $maximum } positions; request fourbars for more
+motion-not-for-sixbars = applies only to fourbars; omit it, or remove sixbars and eightbars from mechanisms
 motion-not-for-stephenson-2 = is not supported for Stephenson II sixbars; omit it, or request other types
 motion-slider-not-listed = a side has a slider; add slider_crank to mechanisms
 motion-inverted-slider-not-listable = an RP dyad makes an inverted slider-crank, which no list can name; omit mechanisms
@@ -368,6 +378,11 @@ motion-sixbars-fitted =
         [one] { $count } sixbar was fitted to the positions on one branch
        *[other] { $count } sixbars were fitted to the positions on one branch
     }
+motion-eightbars-fitted =
+    { $count ->
+        [one] { $count } eightbar was fitted to the positions on one branch
+       *[other] { $count } eightbars were fitted to the positions on one branch
+    }
 motion-sixbars-from-chains =
     { $count ->
         [one] { $count } sixbar from chains with two constraining cranks was evaluated
@@ -396,6 +411,20 @@ motion-sixbars-transmit-better =
     The best fourbar or slider-crank has a minimum transmission angle of { $angle }°; sixbars exceed it{ $listing }
 motion-no-sixbar-transmits-better =
     The best fourbar or slider-crank has a minimum transmission angle of { $angle }°, and no sixbar found exceeds it.
+motion-only-eightbars-feasible = No linkage with fewer links found satisfies all constraints; eightbars do.
+motion-no-eightbar-feasible = No linkage with fewer links found satisfies all constraints; neither does an eightbar.
+motion-only-eightbars-transmit =
+    No linkage with fewer links found transmits well enough; eightbars do{ $listing }
+motion-eightbars-closer =
+    The best linkage with fewer links has a root-mean-square residual of { $error } %; eightbars have at most half of
+    that{ $listing }
+motion-no-eightbar-closer =
+    The best linkage with fewer links has a root-mean-square residual of { $error } %, and no eightbar found has half of
+    that.
+motion-eightbars-transmit-better =
+    The best linkage with fewer links has a minimum transmission angle of { $angle }°; eightbars exceed it{ $listing }
+motion-no-eightbar-transmits-better =
+    The best linkage with fewer links has a minimum transmission angle of { $angle }°, and no eightbar found exceeds it.
 motion-only-sixbars-exist = No fourbar or slider-crank solves this; sixbars do.
 motion-simple-types-impossible = No fourbar or slider-crank solves this, and no sixbar was found.
 motion-only-sixbars-found = No fourbar or slider-crank was found, only sixbars.

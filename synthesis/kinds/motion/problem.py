@@ -193,8 +193,9 @@ class MotionProblem(LinkageProblem):
 
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="Types of linkage to search. auto: fourbars and slider-cranks, and sixbars if none of these is "
-        "feasible. Omitted: fourbars, and slider-cranks if no fourbar is feasible.",
+        description="Types of linkage to search. auto: fourbars and slider-cranks, sixbars if none of these is "
+        "feasible, and eightbars if all of these miss fitted positions by far. Omitted: fourbars, and slider-cranks "
+        "if no fourbar is feasible.",
     )
     chain: Chain | None = Field(
         default=None,
@@ -210,6 +211,13 @@ class MotionProblem(LinkageProblem):
             select_searched_types(self.mechanisms, SIXBARS, list_unsupported(self)),
             list_unsupported_stephenson_2(self),
         )
+
+    @property
+    def has_eightbars(self) -> bool:
+        """Whether eightbars may be searched; for ``auto`` only if positions are fitted, so that all may miss by far."""
+        if self.mechanisms == "auto" and not self.is_least_squares:
+            return False
+        return bool(select_searched_types(self.mechanisms, ("eightbar",), list_unsupported(self)))
 
     @property
     def two_dyad_problem(self) -> MotionProblem | None:

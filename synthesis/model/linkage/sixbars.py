@@ -49,9 +49,11 @@ def build_sixbar(
     )
 
 
-def build_eightbar(joints: Mapping[str, complex], links: Links) -> EightbarMechanism:
+def build_eightbar(
+    joints: Mapping[str, complex], links: Links, *, body_angle: float | None = None
+) -> EightbarMechanism:  # fmt: skip
     """Build the eightbar with the given joints, driven by the link ``input``."""
-    return EightbarMechanism.model_validate(_describe_linkage(joints, links))
+    return EightbarMechanism.model_validate({"reference_body_angle": body_angle, **_describe_linkage(joints, links)})
 
 
 def _describe_linkage(joints: Mapping[str, complex], links: Links) -> dict[str, Any]:

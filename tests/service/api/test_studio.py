@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import service
-from service.api.routes.studio_bundle import BundleError, build_bundles, name_bundle
-from service.api.routes.studio_page import POLICY, load_studio_files
+from service.api.pages.studio_bundle import BundleError, build_bundles, name_bundle
+from service.api.pages.studio_page import POLICY, load_studio_files
 from tests.support.loops import check_each
 
 FOLDER = Path(service.__file__).parent / "studio"

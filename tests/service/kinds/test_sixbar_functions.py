@@ -14,10 +14,12 @@ import pytest
 from synthesis.kinds.function import type_selection
 from synthesis.kinds.function.design import FunctionResult
 from synthesis.model.answer import Search
+from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.support.service.analyses import assert_as_documented
 from tests.support.service.answers import finished
+from tests.support.sixbars.driven import find_dyad_pins
 from tests.support.sixbars.planted_functions import planted
 
 SINE: dict[str, Any] = {
@@ -82,7 +84,10 @@ def held_against_loops(design, values, outputs, *, off: float) -> None:
     """The same, and the linkage transmits as it says."""
     loops, met = shown_by_loops(design, values, outputs, off=off)
     told = design["metrics"]["transmission_angles"]
-    seen = loops.transmission(met, {"coupler": "B", "link_5": "D"})
+    pins = {"coupler": "B", "link_5": "D"}
+    if design["mechanism"]["type"] == "eightbar":
+        pins = find_dyad_pins("eightbar", loops)
+    seen = loops.transmission(met, pins)
     assert set(told) == set(seen)
     for link, angle in seen.items():
         # Between the steps the least may be a little less.
@@ -96,7 +101,7 @@ def sine_is_met(design) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("kind", further(TYPES, ["stephenson_2"]))
+@pytest.mark.parametrize("kind", further([*TYPES, "eightbar"], ["stephenson_2", "eightbar"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     constraints = {"min_transmission_angle": 25.0, "max_link_ratio": 50.0}
     body = answered(client, mechanisms=[kind], constraints=constraints)
@@ -219,6 +224,44 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars,
 
 def _error(design) -> float:
     return design.error
+
+
+@pytest.mark.parametrize(
+    ("mechanisms", "sixbar_error", "searched", "told"),
+    [
+        ("auto", 0.5, ["simple", "sixbar"], "Sixbars reduce the error to"),
+        ("auto", 2.0, ["simple", "sixbar", "eightbar"], "Eightbars reduce the error to 5 % of that of the best"),
+        (["fourbar", "eightbar"], 2.0, ["simple", "eightbar"], "Eightbars reduce the error to 1 % of that of the best"),
+        (["watt_2", "eightbar"], 0.5, ["sixbar", "eightbar"], "Eightbars reduce the error to 20 %"),
+        (["watt_2", "eightbar"], 0.01, ["sixbar"], ""),
+    ],
+)
+def test_eightbars_follow_sixbars_that_miss_by_far(monkeypatch, mechanisms, sixbar_error, searched, told):
+    """A half sine ends where it begins: errors are shares of 90°, how far the output goes."""
+    called: list[str] = []
+
+    def solve(name: str, error: float) -> FunctionResult:
+        called.append(name)
+        design = SimpleNamespace(
+            metrics=SimpleNamespace(min_transmission_angle=30.0, output_range=0.0),
+            structural_error=SimpleNamespace(max=error),
+            dials=SimpleNamespace(output=SimpleNamespace(scale=90.0)),
+            targets=[SimpleNamespace(output=value) for value in (0.0, 1.0, 0.0)],
+            verification=SimpleNamespace(passed=True),
+        )
+        search = Search(method="a", complete=False, candidates=1, accepted=1, rejected={}, seed=0)
+        return FunctionResult.model_construct(designs=[design], search=search, summary="")
+
+    def solve_linkages(_problem, types, _progress) -> FunctionResult:
+        return solve("eightbar", 0.1) if "eightbar" in types else solve("sixbar", sixbar_error)
+
+    monkeypatch.setattr(type_selection, "rank_by_error", lambda _, designs: designs)
+    monkeypatch.setattr(type_selection, "solve_linkages", solve_linkages)
+    half = {"function": {"name": "sine", "x": [0.0, 180.0]}, "mechanisms": mechanisms}
+    problem = parse_problem(SINE | half)
+    answer = type_selection.solve_types(problem, lambda _problem, _progress: solve("simple", 10.0), lambda *_: None)
+    assert called == searched
+    assert told in answer.summary
 
 
 @pytest.mark.slow

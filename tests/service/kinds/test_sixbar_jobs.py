@@ -18,16 +18,19 @@ from synthesis.kinds.motion import type_selection
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.model.answer import Search
 from synthesis.model.linkage.sixbars import SIXBAR_NAMES
+from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.support.service.analyses import assert_as_documented
 from tests.support.service.answers import finished
 from tests.support.service.sixbar_jobs import FIVE, TASK
+from tests.support.sixbars.driven import find_dyad_pins
 from tests.support.sixbars.motion import on_a_way
 from tests.support.sixbars.planted_motion import planted
 
 SIX = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
 SIXBARS = "watt_1", "stephenson_2", "stephenson_1", "stephenson_3"
+NAMES = {**SIXBAR_NAMES, "eightbar": "Eightbar"}
 FOURBAR_TASK = [FIVE[0], FIVE[1], {"x": 70.0, "y": 20.0, "angle": 30.0}]
 
 
@@ -54,14 +57,13 @@ def held_against_loops(design, positions, only: Sequence[int] | None = None) -> 
         assert abs(met.points[k] - complex(position["x"], position["y"])) < 1e-7 * size
         turn = np.radians(position["angle"] - positions[0]["angle"])
         assert abs(np.exp(1j * met.turns[k]) - np.exp(1j * turn)) < 1e-7
-    at_joint = {"coupler": "B", "link_5": "D" if design["mechanism"]["type"] == "stephenson_3" else "E"}
-    seen = loops.transmission(met, at_joint)
+    seen = loops.transmission(met, find_dyad_pins(design["mechanism"]["type"], loops))
     assert design["metrics"]["transmission_angles"] == pytest.approx(seen, abs=0.05)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("kind", further(SIXBARS, ["watt_1"]))
+@pytest.mark.parametrize("kind", further([*SIXBARS, "eightbar"], ["watt_1", "eightbar"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     body = answered(client, mechanisms=[kind])
     designs = passed(body)
@@ -74,7 +76,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     place = f"/v1/jobs/{body['id']}/designs/0"
     root = ET.fromstring(client.get(f"{place}.svg").text)
     assert {e.get("data-joint") for e in root.iter()} - {None} == set(designs[0]["mechanism"]["skeleton"]["joints"])
-    assert SIXBAR_NAMES[kind] in client.get(f"{place}.svg").text
+    assert NAMES[kind] in client.get(f"{place}.svg").text
     for ending in ("dxf", "csv"):
         assert client.get(f"{place}.{ending}").status_code == 200, ending
     motion = client.get(f"{place}/motion?steps=72").json()
@@ -200,6 +202,45 @@ def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, 
 
 def _least(design) -> float:
     return design.metrics.min_transmission_angle
+
+
+NINE = {"positions": on_a_way(np.random.default_rng(1), 9), "method": "least_squares"}
+
+
+@pytest.mark.parametrize(
+    ("stated", "sixbar_error", "searched", "told"),
+    [
+        (NINE | {"mechanisms": "auto"}, 0.02, ["simple", "sixbar"], "sixbars have at most half of that"),
+        (NINE | {"mechanisms": "auto"}, 0.04, ["simple", "sixbar", "eightbar"], "fewer links has a root-mean-square"),
+        (NINE | {"mechanisms": ["fourbar", "eightbar"]}, 0.02, ["simple", "eightbar"], "eightbars have at most half"),
+        (NINE | {"mechanisms": ["watt_1", "eightbar"]}, 0.04, ["sixbar", "eightbar"], "eightbars have at most half"),
+        ({"mechanisms": "auto"}, 0.04, ["simple", "sixbar"], "no sixbar found exceeds it"),
+        ({"mechanisms": ["watt_1", "eightbar"]}, 0.0, ["sixbar", "eightbar"], "no eightbar found exceeds it"),
+    ],
+)
+def test_eightbars_follow_sixbars_that_miss_by_far(monkeypatch, stated, sixbar_error, searched, told):
+    called: list[str] = []
+
+    def build_solver(name: str, error: float):
+        def solve(_problem, _progress) -> MotionResult:
+            called.append(name)
+            metrics = SimpleNamespace(min_transmission_angle=15.0, rms_residual=error)
+            if "method" in stated:
+                metrics.min_transmission_angle = 30.0
+            design = SimpleNamespace(name=name, metrics=metrics, verification=SimpleNamespace(passed=True))
+            search = Search(method="a", complete=False, candidates=1, accepted=1, rejected={}, seed=0)
+            return MotionResult.model_construct(designs=[design], search=search, summary="")
+
+        return solve
+
+    monkeypatch.setattr(type_selection, "make_ranking", lambda _: list)
+    monkeypatch.setattr(type_selection, "solve_sixbars", build_solver("sixbar", sixbar_error))
+    monkeypatch.setattr(type_selection, "solve_eightbars", build_solver("eightbar", 0.01))
+    answer = type_selection.solve_types(
+        parse_problem(TASK | stated), build_solver("simple", 0.2), lambda *_: None
+    )  # fmt: skip
+    assert called == searched
+    assert told in answer.summary
 
 
 @pytest.mark.slow

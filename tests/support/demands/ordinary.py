@@ -50,13 +50,8 @@ def _buildable(result: Any) -> bool:
         and (not _even(first) or "task's size" in result.summary)
     )
     # What nobody can build is listed last, however well it runs.
-    near = [
-        design
-        for design in result.designs
-        if measure_error(design) <= error
-        and _comparable(first, design)
-        and _can_be_built(design) >= _can_be_built(first)
-    ]
+    rivals = [design for design in result.designs if _can_be_built(design) >= _can_be_built(first)]
+    near = [design for design in rivals if measure_error(design) <= error and _comparable(first, design)]
     return told and not any(map(_sound, near)) and (_even(first) or not any(map(_even, near)))
 
 

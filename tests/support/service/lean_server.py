@@ -1,5 +1,5 @@
 """The real service, except that a worker loads the kernels of a kind with its first job of that kind, not at its start,
-takes answers that a test or another worker of the session has found, and that all servers share one OpenAPI document.
+and takes answers that a test or another worker of the session has found.
 
 Loading all kernels takes ten seconds of CPU time, and the tests of a session ask for a part of them. Run like
 ``mechsynth``.
@@ -22,7 +22,4 @@ if __name__ == "__mp_main__":
     answers.share_with_worker(Path(os.environ["SCRIPTED_FOLDER"]))
 
 if __name__ == "__main__":
-    from tests.support.service.api_document import share_document
-
-    share_document()
     sys.exit(main())

@@ -232,9 +232,6 @@ def analyse_on_demand():
 
 
 if __name__ == "__main__":
-    from tests.support.service.api_document import share_document
-
     break_lanes()
     analyse_on_demand()
-    share_document()
     sys.exit(main())

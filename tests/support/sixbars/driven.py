@@ -18,9 +18,8 @@ def transmits(design: Any, loops: Loops, met: Followed, at: dict[str, str]) -> b
     return told.keys() == seen.keys() and all(seen[link] >= angle - CLOSE for link, angle in told.items())
 
 
-def find_dyad_pins(design: Any, loops: Loops) -> dict[str, str]:
-    """The pins of the dyads of a sixbar or eightbar that traces a path, by the links that they drive."""
-    kind = design.mechanism.type
+def find_dyad_pins(kind: str, loops: Loops) -> dict[str, str]:
+    """The pins of the dyads of a sixbar or eightbar with P, by the links that they drive."""
     if kind != "eightbar":
         return {"coupler": "B", "link_5": "D" if kind == "stephenson_3" else "E"}
     # Every dyad of an eightbar counts, also where its links have the form of a triad.

@@ -1,7 +1,7 @@
-"""Planted motion: positions of random sixbars of each type, and for how many a sound one of that type is found.
+"""Planted motion: positions of random sixbars of each type and of eightbars, and how often a sound one is found.
 
-Planted sixbars close over a random turn of their input, transmit with 20° at least and are no larger than five sizes of
-their task. Of five positions at random turns, found is a sound sixbar; of 24 at equal ones, of which one design is
+Planted linkages close over a random turn of their input, transmit with 20° at least and are no larger than five sizes
+of their task. Of five positions at random turns, found is a sound linkage; of 24 at equal ones, of which one design is
 wanted, a sound one off by a millionth of the task's size at most, root mean square. Each answer is driven once more by
 its loops; ``false`` counts what they do not confirm.
 """
@@ -25,12 +25,16 @@ from tests.support.sixbars.spread import each
 TASKS = 100
 
 FEW, MANY = 5, 24
+TYPES = [*SIXBARS, "eightbar"]
+STRIDE = 23
+"""Step from a task's topology to the next one's: no divisor of the number of topologies, so that all take part."""
+
 FOUND = 1e-6
 """Root mean square over many positions of a distance in task sizes and an angle in radians."""
 
 
 def planted(rng: np.random.Generator, form: Topology, count: int) -> Task:
-    """So many positions of a random sixbar of a topology with a heading."""
+    """So many positions of a random linkage of a topology with a heading."""
     n, shown = len(form.nodes), form.nodes[:, 0] == VIEW
     while True:
         z = rng.normal(size=n) + 1j * rng.normal(size=n)
@@ -60,7 +64,7 @@ def _transmits(form: Topology, places: Complex, cosines: Real) -> bool:
 
 
 def tried(kind: str, task: Task) -> tuple[bool, float, list[str]]:
-    """Whether a task has a sound sixbar of a type, what that took, and what is not confirmed of each."""
+    """Whether a task has a sound linkage of a type, what that took, and what is not confirmed of each."""
     result, processor, _ = solved(task, mechanisms=[kind], max_designs=3 if len(task) == FEW else 1)
     designs = sound(result)
     found = [design for design in designs if len(task) == FEW or get_rms_error(design) <= FOUND]
@@ -69,10 +73,10 @@ def tried(kind: str, task: Task) -> tuple[bool, float, list[str]]:
 
 def table(tasks: int, seed: int) -> None:
     print(f"{'planted':<16}{'positions':>10}{'tasks':>6}{'found %':>9}{'CPU s':>8}{'most':>7}{'false':>8}")
-    for count, kind in itertools.product((FEW, MANY), SIXBARS):
+    for count, kind in itertools.product((FEW, MANY), TYPES):
         rng = np.random.default_rng(seed)
         forms = list_forms(kind, guides=True)
-        drawn = [(kind, planted(rng, forms[n % len(forms)], count)) for n in range(tasks)]
+        drawn = [(kind, planted(rng, forms[STRIDE * n % len(forms)], count)) for n in range(tasks)]
         found, times, faults = zip(*each(tried, drawn), strict=True)
         listed = [fault for of_task in faults for fault in of_task]
         share = 100.0 * sum(found) / tasks

@@ -136,7 +136,7 @@ def false_claim(design: Any) -> str:
     curve = drive(mechanism, float(mechanism.reference_input) + turn, order=0).joints["P"][0]
     if not max(np.abs(met.points - curve).max(), abs(met.points[-1] - met.points[0])) < 1e-7 * np.abs(curve).max():
         return "another curve"
-    return "" if transmits(design, loops, met, find_dyad_pins(design, loops)) else "transmission angle"
+    return "" if transmits(design, loops, met, find_dyad_pins(design.mechanism.type, loops)) else "transmission angle"
 
 
 def tried(kind: str, points: Complex, own: float, constraints: dict[str, float]) -> tuple[float, float, float, Any]:

@@ -144,7 +144,7 @@ class Holes(_PlaceChoice):
         return self
 
 
-class Stock(_PlaceChoice):
+class RotorStock(_PlaceChoice):
     """Weights in stock; one may be fixed at each of the given angles."""
 
     masses: list[Annotated[PositiveNumber, MASS]] = Field(min_length=1, max_length=MAX_LEVELS)
@@ -158,7 +158,7 @@ class Correction(Statement):
         default=None, description="Mass of each correction; the radii follow from it."
     )
     holes: Holes | None = None
-    stock: Stock | None = None
+    stock: RotorStock | None = None
     removed: bool = Field(
         default=False, strict=True, description="Whether the masses are removed from the rotor; for holes always."
     )
@@ -172,7 +172,7 @@ class Correction(Statement):
         return self
 
     @property
-    def place_choice(self) -> Holes | Stock | None:
+    def place_choice(self) -> Holes | RotorStock | None:
         """The requested holes or stock weights; None if the correction is one mass per plane."""
         return self.holes or self.stock
 

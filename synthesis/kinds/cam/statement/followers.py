@@ -14,6 +14,7 @@ from synthesis.model.problem import (
     NonNegative,
     PositiveLength,
     PositiveNumber,
+    Sizable,
     Statement,
 )
 
@@ -141,7 +142,7 @@ class FollowerDynamics(Statement):
         description="Force per length unit of the elastic train between cam and mass. Default: unknown, and vibrations "
         "are not computed.",
     )
-    train_damping_ratio: Annotated[NonNegative, Field(lt=1.0)] = Field(
+    train_damping_ratio: Annotated[float, Field(strict=True, ge=0.0, lt=1.0), Sizable] = Field(
         default=0.0, description="Fraction of critical damping of the mass on its train."
     )
     min_frequency_ratio: NonNegative | None = Field(

@@ -29,15 +29,13 @@ from synthesis.fit.linkage.descent import (
 )
 from synthesis.fit.linkage.setting import pack_topology, pack_unlimited
 from synthesis.fit.linkage.topology import Topology
-from synthesis.kinds.function.fourbar.constraints import LIMIT_MARGIN
+from synthesis.kinds.function.fourbar.constraints import DEFAULT_MAX_RATIO, LIMIT_MARGIN
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.statement.mechanism_types import Sixbar
+from synthesis.kinds.function.statement.mechanism_types import Multiloop
+from synthesis.results.practicality import MAX_LINK_RATIO
 
 ANGLE_MARGIN = math.radians(0.02)
 """Margin, radians, added to a required transmission angle at the samples, because it is smaller between them."""
-
-DEFAULT_MAX_RATIO = 1e3
-"""Maximum link ratio if none is given."""
 
 SMALL_ROOT = 1e-5
 """Root of the output's weight relative to the input's that leaves all of a Stephenson II's error to the output."""
@@ -45,7 +43,7 @@ SMALL_ROOT = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class SixbarCandidate:
-    """A candidate sixbar.
+    """A candidate sixbar or eightbar.
 
     Attributes
     ----------
@@ -62,7 +60,7 @@ class SixbarCandidate:
         In the criterion's norm, radians.
     """
 
-    type: Sixbar
+    type: Multiloop
     fit: Fit
     inputs: Real
     reference: float
@@ -101,9 +99,10 @@ def build_packer(problem: FunctionProblem, least: float) -> Callable[[Topology],
     ``least`` is the minimum transmission angle, degrees. Limits that depend on the place of the sixbar are left out: it
     is chosen after the search.
     """
-    demanded, ratio = problem.constraints, DEFAULT_MAX_RATIO
-    if demanded.max_link_ratio is not None:
-        ratio = min(ratio, demanded.max_link_ratio)
+    demanded, ratio = problem.constraints, MAX_LINK_RATIO
+    # The default of fourbars, 100, cannot be built; with more loops the error is small without long links.
+    if "max_link_ratio" in demanded.model_fields_set:
+        ratio = min(demanded.max_link_ratio or DEFAULT_MAX_RATIO, DEFAULT_MAX_RATIO)
     lengths = demanded.link_length
     if lengths is not None and lengths.min > 0.0 and lengths.max is not None:
         ratio = min(ratio, lengths.max / lengths.min)

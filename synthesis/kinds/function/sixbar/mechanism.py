@@ -15,16 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.arrays import Complex, Real
-from kinematics.linkage.planar.catalogue import SIXBAR_LINKS
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.kinds.function.design import Dials
 from synthesis.kinds.function.fourbar.task import DEFAULT_GROUND_LENGTH, FunctionTask, make_dials
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.sixbar.fits import SixbarCandidate, measure_motion
-from synthesis.kinds.function.statement.mechanism_types import SIXBARS
-from synthesis.model.linkage.answer import SixbarMechanism
+from synthesis.model.linkage.answer import EightbarMechanism, SixbarMechanism
 from synthesis.model.linkage.conversion import to_complex
-from synthesis.model.linkage.sixbars import build_sixbar, list_lengths
+from synthesis.model.linkage.sixbars import Links, build_eightbar, build_sixbar, list_lengths
 from synthesis.numerics.box_placement import ROUNDING_TOLERANCE, Boxes, Placement, place_in_boxes
 from synthesis.results.placement import convert_regions
 
@@ -55,12 +53,6 @@ MIN_LENGTH = 1e-12
 SIZE_WEIGHT = 0.1
 """Weight of the logarithm of the size relative to that of the link ratio."""
 
-LINK_JOINTS = {
-    name: {link: tuple(joint for joint in joints if joint != "P") for link, joints in SIXBAR_LINKS[name].items()}
-    for name in SIXBARS
-}
-"""The joints on each link of the types."""
-
 
 class _Frame(NamedTuple):
     """A sixbar over its motion: joints by name, shape (m,) each, and the reference angle of the output, degrees."""
@@ -69,8 +61,10 @@ class _Frame(NamedTuple):
     output_frame: float
 
 
-def build_function_sixbar(task: FunctionTask, found: SixbarCandidate) -> tuple[SixbarMechanism, Dials]:
-    """Build a candidate sixbar in the problem's coordinates, at the first target, with its dials."""
+def build_function_linkage(
+    task: FunctionTask, found: SixbarCandidate
+) -> tuple[SixbarMechanism | EightbarMechanism, Dials]:
+    """Build a candidate in the problem's coordinates, at the first target, with its dials."""
     problem = task.problem
     frame, there = _select_frame(problem, found, list(_list_frames(task, found)))
     joints = {name: there.origin + there.along * complex(places[0]) for name, places in frame.joints.items()}
@@ -79,7 +73,15 @@ def build_function_sixbar(task: FunctionTask, found: SixbarCandidate) -> tuple[S
     ground = _measure_ground_angle(found)
     generator = np.array([0.0, 0.0, 0.0, found.start - ground, -ground, *found.scales])
     dials = make_dials(task, generator, turned, turned + frame.output_frame)
-    return build_sixbar(found.type, joints, LINK_JOINTS[found.type]), dials
+    links = _list_link_joints(found)
+    made = build_eightbar(joints, links) if found.type == "eightbar" else build_sixbar(found.type, joints, links)
+    return made, dials
+
+
+def _list_link_joints(found: SixbarCandidate) -> Links:
+    """Return the joints on each link."""
+    names = found.topology.pin_names
+    return {link: tuple(names[pin] for pin in pins) for link, pins in found.topology.links.items()}
 
 
 def _select_frame(problem: FunctionProblem, found: SixbarCandidate, frames: list[_Frame]) -> tuple[_Frame, Placement]:
@@ -142,14 +144,14 @@ def _measure_fourbar(loop: dict[str, complex]) -> Real:
 def _measure_unevenness(found: SixbarCandidate, joints: dict[str, Complex]) -> float:
     """Return the logarithm of the link ratio, plus a small weight of the logarithm of the size."""
     there = {name: complex(places[0]) for name, places in joints.items()}
-    lengths = list_lengths(there, LINK_JOINTS[found.type]).values()
+    lengths = list_lengths(there, _list_link_joints(found)).values()
     extent = np.ptp([z.real for z in there.values()]) + np.ptp([z.imag for z in there.values()])
     return math.log(max(lengths) / max(min(lengths), MIN_LENGTH)) + SIZE_WEIGHT * math.log(float(extent))
 
 
 def _place_sixbar(problem: FunctionProblem, found: SixbarCandidate, frame: _Frame) -> Placement:
     """Find the similarity that places a sixbar from its own frame into regions and box."""
-    links, joints = LINK_JOINTS[found.type], frame.joints
+    links, joints = _list_link_joints(found), frame.joints
     still = links[GROUND]
     constraints, space = problem.constraints, problem.space
     moving = [name for name in joints if name not in still]
@@ -228,7 +230,7 @@ def _find_middle(low: Real, high: Real, n: int) -> float:
 
 def _get_preferred_size(joints: dict[str, Complex]) -> float:
     """Return the size at which the longest ground line has the default length."""
-    still: Sequence[complex] = [complex(joints[name][0]) for name in ("O2", "O4", "O6") if name in joints]
+    still: Sequence[complex] = [complex(places[0]) for name, places in joints.items() if name.startswith("O")]
     return DEFAULT_GROUND_LENGTH / max(abs(one - other) for one in still for other in still)
 
 
@@ -238,6 +240,6 @@ def _limit_sizes(problem: FunctionProblem, found: SixbarCandidate, joints: dict[
     if limits is None:
         return 0.0, math.inf
     lengths = list_lengths(
-        {name: complex(places[0]) for name, places in joints.items()}, LINK_JOINTS[found.type]
+        {name: complex(places[0]) for name, places in joints.items()}, _list_link_joints(found)
     ).values()
     return limits.min / min(lengths), math.inf if limits.max is None else limits.max / max(lengths)

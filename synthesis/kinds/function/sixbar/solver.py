@@ -1,4 +1,4 @@
-"""Search for sixbars whose output follows a function or meets pairs.
+"""Search for sixbars and eightbars whose output follows a function or meets pairs.
 
 1. Thousands of sixbars are drawn near the function (:mod:`~synthesis.kinds.function.sixbar.starts`).
 2. The best descend a few steps at :data:`FEW_POINT_COUNT` of the points, with the constraints as penalties
@@ -37,7 +37,7 @@ from synthesis.fit.linkage.descent import (
     sort_fits,
 )
 from synthesis.fit.linkage.setting import RATIO
-from synthesis.fit.linkage.topology import FUNCTION_SIXBARS, Topology
+from synthesis.fit.linkage.topology import FUNCTION_SIXBARS, Topology, list_generators
 from synthesis.kinds.function.fourbar.task import FunctionTask
 from synthesis.kinds.function.nine_pairs.system import PAIR_COUNT, SOLUTION_COUNT
 from synthesis.kinds.function.sixbar.criterion import MAX_LAST_ROUNDS, MAX_ROUNDS, optimize_sixbar
@@ -50,7 +50,7 @@ from synthesis.kinds.function.sixbar.fits import (
 )
 from synthesis.kinds.function.sixbar.nine_pair_starts import find_sixbars_through_nine
 from synthesis.kinds.function.sixbar.starts import draw_starts
-from synthesis.kinds.function.statement.mechanism_types import Sixbar
+from synthesis.kinds.function.statement.mechanism_types import Multiloop
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.numerics.augmented_lagrangian import MIN_WEIGHT
 from synthesis.results.ranking import select_distinct
@@ -204,7 +204,7 @@ class SixbarSearch:
         self.remark = ""
         """Statement about all sixbars of a type, for the summary."""
 
-    def find_sixbars(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
+    def find_sixbars(self, name: Multiloop, rng: np.random.Generator, progress: Progress) -> list[SixbarCandidate]:
         """Find the best sixbars of a type, best first."""
         follows = self.task.problem.follows_watts
         searching = scale_progress(progress, 0.0, SEARCH_SHARE) if follows else progress
@@ -244,10 +244,10 @@ class SixbarSearch:
         return chosen if len(chosen) <= most else [chosen[k] for k in rng.choice(len(chosen), most, replace=False)]
 
     def _search_scales(
-        self, name: Sixbar, scales: tuple[float, float], shared: int, rng: np.random.Generator, progress: Progress
+        self, name: Multiloop, scales: tuple[float, float], shared: int, rng: np.random.Generator, progress: Progress
     ) -> list[SixbarCandidate]:
         """Search with given scales, for pairs until a sixbar meets them."""
-        search = _ScaleSearch(FUNCTION_SIXBARS[name], scales, self)
+        search = _ScaleSearch(list_generators(name), scales, self)
         effort, batches = (PAIR_EFFORT, MAX_BATCHES) if self.meets_pairs else (FUNCTION_EFFORT, 1)
         reached: list[Fit] = []
         for n in range(batches):
@@ -263,10 +263,10 @@ class SixbarSearch:
             reached = search.meet_exactly(reached)
         return [self._build_candidate(name, fit, scales) for fit in reached]
 
-    def _build_candidate(self, name: Sixbar, fit: Fit, scales: tuple[float, float]) -> SixbarCandidate:
+    def _build_candidate(self, name: Multiloop, fit: Fit, scales: tuple[float, float]) -> SixbarCandidate:
         return SixbarCandidate(name, fit, self.points.inputs, self.points.reference, scales, measure_rms(fit))
 
-    def _meets_pairs(self, name: Sixbar, fit: Fit, scales: tuple[float, float]) -> bool:
+    def _meets_pairs(self, name: Multiloop, fit: Fit, scales: tuple[float, float]) -> bool:
         """Return whether a fit meets all pairs."""
         one = self._build_candidate(name, fit, scales)
         return one.error < PAIR_TOLERANCE and compute_max_error(one, self.points.dense) < PAIR_TOLERANCE
@@ -316,20 +316,21 @@ class SixbarSearch:
 
 
 class _ScaleSearch:
-    """Search for sixbars of a topology with given scales.
+    """Search for linkages of some topologies with given scales.
 
     ``pool`` are the best distinct fits at few points, the nearest first, and ``unperturbed`` those before they were
     perturbed, which belong to more valleys.
     """
 
-    def __init__(self, topology: Topology, scales: tuple[float, float], search: SixbarSearch) -> None:
-        self.topology, self.search, self.few, self.points = topology, search, search.few, search.points
+    def __init__(self, topologies: Sequence[Topology], scales: tuple[float, float], search: SixbarSearch) -> None:
+        self.topologies, self.search, self.few, self.points = topologies, search, search.few, search.points
         self.scale, self.pool, self.unperturbed = scales[1], list[Fit](), list[Fit]()
         reference = self.points.reference
         self.few_rotations = scales[0] * (self.few.inputs - reference)
         self.rotations = scales[0] * (self.points.inputs - reference)
-        self.few_task = search.build_task(topology, scales, self.few, reference, FEW_STEPS)
-        self.task = search.build_task(topology, scales, self.points, reference, ALL_STEPS)
+        # Several topologies are chains of dyads, whose tasks are the same.
+        self.few_task = search.build_task(topologies[0], scales, self.few, reference, FEW_STEPS)
+        self.task = search.build_task(topologies[0], scales, self.points, reference, ALL_STEPS)
 
     @property
     def nearest_error(self) -> float:
@@ -337,29 +338,33 @@ class _ScaleSearch:
         return measure_rms(self.pool[0]) if self.pool else math.inf
 
     def run_batch(
-        self, name: Sixbar, effort: Effort, shared: int, rng: np.random.Generator, progress: Progress
+        self, name: Multiloop, effort: Effort, shared: int, rng: np.random.Generator, progress: Progress
     ) -> None:
         """Draw, descend and follow sixbars into the pool, and perturb the pool."""
         search = self.search
-        drawn = math.ceil(effort.drawn / shared)
-        starts = draw_starts(
-            self.topology,
-            self.few_rotations,
-            self.scale * self.few.outputs,
-            compute_max_cosine(max(search.least - START_ANGLE_SLACK, 0.0)),
-            float(search.pack_limits(self.topology)[RATIO]),
-            drawn,
-            math.ceil(effort.descended[0] / shared),
-            int(rng.integers(2**31)),
-        )
+        drawn, keep = math.ceil(effort.drawn / shared), math.ceil(effort.descended[0] / shared)
+        starts: list[Fit] = []
+        for topology in self.topologies:
+            starts += draw_starts(
+                topology,
+                self.few_rotations,
+                self.scale * self.few.outputs,
+                compute_max_cosine(max(search.least - START_ANGLE_SLACK, 0.0)),
+                float(search.pack_limits(topology)[RATIO]),
+                math.ceil(drawn / len(self.topologies)),
+                keep,
+                int(rng.integers(2**31)),
+            )
+        starts = sort_fits(starts)[:keep]
         search.weighed += drawn
-        progress(0.1, compose("function-sixbars-of-type", count=drawn, type=name))
+        linkages = compose("function-linkages-of-type", count=drawn, type=name)
+        progress(0.1, linkages)
         found = descend_softly(starts, self.few_task, effort.descended[1])
-        progress(0.3, compose("function-following-sixbars", count=drawn, type=name))
+        progress(0.3, compose("function-following-linkages", linkages=linkages))
         for count, steps in (effort.followed, effort.followed_farther):
             found = follow_valleys(select_distinct_fits(found, math.ceil(count / shared)), self.few_task, steps)
         self.pool = select_distinct_fits([*self.pool, *found], POOL_SIZE)
-        progress(0.7, compose("function-improving-sixbars", count=drawn, type=name))
+        progress(0.7, compose("function-improving-linkages", linkages=linkages))
         self.unperturbed = self.pool[: effort.followed_to_the_end[0]]
         self._perturb_pool(effort.hops, rng)
         if MET_ERROR < self.nearest_error < NEAR_ERROR:
@@ -384,7 +389,7 @@ class _ScaleSearch:
 
     def _move_to_points(self, fit: Fit) -> Fit:
         """Return a fit at few points with the inputs at all points."""
-        if not self.topology.triad:
+        if not fit.topology.triad:
             return fit._replace(inputs=self.rotations)
         return fit._replace(inputs=np.interp(self.points.inputs, self.few.inputs, fit.inputs))
 

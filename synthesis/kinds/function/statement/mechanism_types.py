@@ -26,12 +26,17 @@ Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
+Multiloop = Sixbar | Literal["eightbar"]
+"""Linkages of several loops; an eightbar has any of ten topologies."""
+
+MULTILOOP_TYPES: tuple[Multiloop, ...] = (*SIXBARS, "eightbar")
+
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Multiloop], Field(min_length=1, max_length=6)]
 """A list of types by name, or ``auto`` for the simplest type that is good enough."""
 
 
 def list_unsupported(problem: FunctionProblem) -> Iterator[Contradiction]:
-    """Yield the given fields that sixbars do not support."""
+    """Yield the given fields that sixbars and eightbars do not support."""
     if problem.slides:
         yield Contradiction("/mechanism", compose("function-sixbar-output-rotates"))
     if problem.has_given_zeros:
@@ -47,4 +52,4 @@ def check_types(problem: FunctionProblem) -> list[Contradiction]:
     if ("slider_crank" in stated) != problem.slides or (problem.slides and set(stated) != {"slider_crank"}):
         return [Contradiction("/mechanisms", compose("function-slider-crank-not-alone"))]
     unclassed = refuse_class(problem.constraints) if set(stated) == {UNCLASSED_SIXBAR} else []
-    return [*unclassed, *find_type_contradictions(stated, problem.sixbars, list_unsupported(problem))]
+    return [*unclassed, *find_type_contradictions(stated, MULTILOOP_TYPES, list_unsupported(problem))]

@@ -27,7 +27,14 @@ from kinematics.linkage.planar.limits import find_branches, find_reference_branc
 from kinematics.linkage.planar.mechanism import GROUND
 from kinematics.linkage.refined_extremes import GRID_SIZE, find_min_transmission_angles
 from kinematics.linkage.slider_crank import range as slider_range
-from synthesis.model.linkage.answer import FourbarMechanism, SixbarMechanism, SliderCrankMechanism
+from synthesis.kinds.function.design import FunctionMechanism
+from synthesis.model.linkage.answer import (
+    EightbarMechanism,
+    FourbarMechanism,
+    MultiloopMechanism,
+    SixbarMechanism,
+    SliderCrankMechanism,
+)
 from synthesis.model.linkage.conversion import build_driven_fourbar, to_complex
 from synthesis.verification.branch_drive import MechanismOnBranch
 from synthesis.verification.measures import ROTATING_INPUT_CLASSES, classify_inner_fourbar
@@ -35,6 +42,12 @@ from synthesis.verification.reconstruction import rebuild_mechanism
 
 RANGE_TOLERANCE = 1e-9
 """Tolerance, radians, of a range at the end of its branch; it covers rounding."""
+
+DYAD_LINKS = {
+    "stephenson_2": ("link_3", "link_5", "output"),
+    "eightbar": ("coupler", "link_5", "link_7"),
+}
+"""First links of the driven dyads, or legs of a triad, of types that differ from other sixbars."""
 
 
 class DrivenStates(NamedTuple):
@@ -137,10 +150,10 @@ class _Slider(Drive):
         return all(slider_range.is_same_circuit(self.linkage, *first, float(x), int(sign)) for x, sign in rest)
 
 
-class _Sixbar(Drive):
+class _Multiloop(Drive):
     turns = math.tau
 
-    def __init__(self, design: SixbarMechanism) -> None:
+    def __init__(self, design: SixbarMechanism | EightbarMechanism) -> None:
         mechanism = rebuild_mechanism(design)
         if mechanism is None:
             raise DimensionError("input", "lengths that can be assembled", math.nan)
@@ -148,17 +161,17 @@ class _Sixbar(Drive):
             # Only the branch of the reference counts: a generator never changes its assembly.
             own = find_reference_branch(mechanism, find_branches(mechanism))
         except MechanismError as fault:
-            raise DimensionError("input", "a sixbar whose circuits are known", math.nan) from fault
+            raise DimensionError("input", "a linkage whose circuits are known", math.nan) from fault
         if own is None:
-            raise DimensionError("input", "a sixbar that does not begin at a toggle", math.nan)
+            raise DimensionError("input", "a linkage that does not begin at a toggle", math.nan)
         self.assembly, self.mechanism, self.own = 0, mechanism, MechanismOnBranch(mechanism, own)
         ground = mechanism.links[GROUND]
         self.pivots = [complex(mechanism.joints[name]) for name in ground]
         self._moving = [name for name in mechanism.joints if name not in ground]
-        # Sixbars are measured with absolute angles, so their frame is not turned.
+        # Linkages of several loops are measured with absolute angles, so their frame is not turned.
         self.frame = 0.0
         self.full = own.full
-        self.dyads = ("link_3", "link_5", "output") if design.type == "stephenson_2" else ("coupler", "link_5")
+        self.dyads = DYAD_LINKS.get(design.type, ("coupler", "link_5"))
         self.barker = classify_inner_fourbar(mechanism)
 
     def _remove_full_turns(self, angles: Real | float) -> Real:
@@ -188,7 +201,7 @@ class _Sixbar(Drive):
         return self.is_on_branch(float(angles.min()), float(angles.max()))
 
 
-def make_drive(mechanism: FourbarMechanism | SliderCrankMechanism | SixbarMechanism) -> Drive:
+def make_drive(mechanism: FunctionMechanism) -> Drive:
     """Make the drive of a linkage.
 
     Raises
@@ -198,4 +211,4 @@ def make_drive(mechanism: FourbarMechanism | SliderCrankMechanism | SixbarMechan
     """
     if isinstance(mechanism, FourbarMechanism):
         return _Fourbar(mechanism)
-    return _Sixbar(mechanism) if isinstance(mechanism, SixbarMechanism) else _Slider(mechanism)
+    return _Multiloop(mechanism) if isinstance(mechanism, MultiloopMechanism) else _Slider(mechanism)

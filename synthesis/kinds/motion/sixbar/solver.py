@@ -1,4 +1,4 @@
-"""Motion generation by sixbars, fitted to the positions by the engine of :mod:`synthesis.fit.linkage`.
+"""Motion generation by sixbars and eightbars, fitted to the positions by the engine of :mod:`synthesis.fit.linkage`.
 
 A round, for all topologies of the requested types together:
 
@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.arrays import Real
+from kinematics.arrays import Complex, Real
 from kinematics.message import compose
 from synthesis.fit.linkage.closure import trace_linkage
 from synthesis.fit.linkage.descent import (
@@ -48,7 +48,7 @@ from synthesis.kinds.motion.sixbar.chain_solver import solve_by_chains
 from synthesis.kinds.motion.sixbar.limits import Aims, Limits
 from synthesis.kinds.motion.sixbar.starts import draw_starts
 from synthesis.kinds.motion.sixbar.summary import describe_sixbars
-from synthesis.kinds.motion.statement.mechanism_types import Sixbar
+from synthesis.kinds.motion.statement.mechanism_types import Multiloop
 from synthesis.kinds.motion.task.positions import compute_needed_motion, make_motion_task
 from synthesis.kinds.motion.task.ranking import make_ranking
 from synthesis.kinds.motion.task.target_poses import make_target_poses
@@ -68,6 +68,7 @@ SAMPLING_WEIGHTS = {
     "stephenson_1": (1.0, 1.0),
     "stephenson_2": (2.0, 0.5, 0.5),
     "stephenson_3": (3.0,),
+    "eightbar": len(list_forms("eightbar", guides=True)) * (1.0,),
 }
 """Relative number of random linkages of each topology: largest for those that carry a body through most positions."""
 
@@ -135,6 +136,40 @@ ATTEMPTS_PER_DESIGN, MIN_ATTEMPTS, CONSTRAINED_ATTEMPTS = 4, 20, 150
 matter."""
 
 
+class Family(NamedTuple):
+    """Linkages of one number of links, which are searched together.
+
+    Attributes
+    ----------
+    method : str
+        Name of the search in answers.
+    examined, verifying : str
+        Messages of progress.
+    fitted : str
+        Message with the number of fits, the beginning of the summary.
+    """
+
+    method: str
+    examined: str
+    verifying: str
+    fitted: str
+
+
+SIXBAR_FAMILY = Family(
+    method="sixbar_descents",
+    examined="motion-sixbars-examined",
+    verifying="motion-verifying-best-sixbars",
+    fitted="motion-sixbars-fitted",
+)
+
+EIGHTBAR_FAMILY = Family(
+    method="eightbar_descents",
+    examined="motion-eightbars-examined",
+    verifying="motion-verifying-best-eightbars",
+    fitted="motion-eightbars-fitted",
+)
+
+
 class Candidate(NamedTuple):
     """A fit that meets the positions, the aims that it satisfies, and its value, the larger the better."""
 
@@ -143,13 +178,14 @@ class Candidate(NamedTuple):
     value: float
 
 
-class SixbarSearch:
-    """Search for the sixbars of one problem."""
+class LinkageSearch:
+    """Search for the linkages of one problem and family."""
 
-    def __init__(self, problem: MotionProblem, types: tuple[Sixbar, ...]) -> None:
-        self.problem = problem
+    def __init__(self, problem: MotionProblem, family: Family, types: tuple[Multiloop, ...]) -> None:
+        self.problem, self.family = problem, family
         self.task, self.target = make_motion_task(problem), make_target_poses(problem)
         self.kinds: dict[Topology, str] = {form: kind for kind in types for form in list_forms(kind, guides=True)}
+        self.places = {form: (np.array(list(form.pin_names)), 1e6 * n) for n, form in enumerate(self.kinds)}
         self.limits = Limits(problem, self.task)
         self.exact: Real = np.all(self.target.exact_mask, axis=1)
         self.needed = compute_needed_motion(self.task)
@@ -192,7 +228,7 @@ class SixbarSearch:
                 rounds = min(rounds, EXTENSION_FACTOR * number + MIN_ROUNDS)
             found += [Candidate(fit, aims[relaxed], 0.0) for fit in met]
             found = self._select_distinct(found, enough)
-            progress(number / MAX_ROUNDS, compose("motion-sixbars-examined", count=self.descents))
+            progress(number / MAX_ROUNDS, compose(self.family.examined, count=self.descents))
         return [one.fit for one in self._improve(found, rng)]
 
     def _run_round(self, task: FitTask, pool: list[Fit], rng: np.random.Generator) -> tuple[list[Fit], list[Fit]]:
@@ -214,12 +250,11 @@ class SixbarSearch:
 
     def _drop_near(self, pool: Sequence[Fit], met: Sequence[Fit]) -> list[Fit]:
         """Return the fits of a pool that are not near one that meets the positions: they would lead to the same one."""
-        places = [np.array(self._list_joints(fit)) for fit in met]
-        return [
-            fit
-            for fit in pool
-            if not any(np.abs(place - self._list_joints(fit)).max() < MIN_SEPARATION for place in places)
-        ]
+        if not (pool and met):
+            return list(pool)
+        ours, theirs = (np.array([self._list_joints(fit) for fit in fits]) for fits in (pool, met))
+        distances = np.abs(ours[:, None] - theirs).max(axis=2).min(axis=1)
+        return [fit for fit, distance in zip(pool, distances, strict=True) if distance >= MIN_SEPARATION]
 
     def _draw_starts(self, task: FitTask, rng: np.random.Generator) -> list[Fit]:
         weights = [weight for kind in dict.fromkeys(self.kinds.values()) for weight in SAMPLING_WEIGHTS[kind]]
@@ -238,10 +273,10 @@ class SixbarSearch:
         chosen = select_distinct([self._list_joints(one.fit) for one in ordered], most, MIN_SEPARATION)
         return [ordered[k] for k in chosen]
 
-    def _list_joints(self, fit: Fit) -> list[complex]:
+    def _list_joints(self, fit: Fit) -> Complex:
         """Return the joints of a fit, and a place of its topology far from those of all others."""
-        joints = [complex(*fit.x[2 * node : 2 * node + 2]) for node in fit.topology.pin_names]
-        return [*joints, 1e6 * list(self.kinds).index(fit.topology)]
+        nodes, place = self.places[fit.topology]
+        return np.append(fit.x[2 * nodes] + 1j * fit.x[2 * nodes + 1], place)
 
     def _evaluate(self, one: Candidate) -> Candidate:
         """Return a candidate with its value, the quality of its motion."""
@@ -320,7 +355,7 @@ class SixbarSearch:
                     most = FIT_EXTENSION_FACTOR * FIT_ROUNDS
             # The budget may be extended, but reported progress must not decrease.
             share = max(share, number / most)
-            progress(share, compose("motion-sixbars-examined", count=self.descents))
+            progress(share, compose(self.family.examined, count=self.descents))
         return sort_fits([*found, *self.converge_fits(pool)])
 
     def converge_fits(self, pool: Sequence[Fit]) -> list[Fit]:
@@ -395,26 +430,38 @@ def _take_met(fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
     return ordered[:met], ordered[met:]
 
 
-def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: Progress) -> MotionResult:
-    """Solve for sixbars of the given types that carry the body through two to sixty positions."""
+def solve_sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for sixbars of the requested types that carry the body through two to sixty positions."""
     if problem.chain is not None:
-        return solve_by_chains(problem, types, progress)
-    search = SixbarSearch(problem, types)
+        return solve_by_chains(problem, problem.sixbars, progress)
+    return _solve_by_family(problem, SIXBAR_FAMILY, problem.sixbars, progress)
+
+
+def solve_eightbars(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Solve for eightbars that carry the body through two to sixty positions."""
+    return _solve_by_family(problem, EIGHTBAR_FAMILY, ("eightbar",), progress)
+
+
+def _solve_by_family(
+    problem: MotionProblem, family: Family, types: tuple[Multiloop, ...], progress: Progress
+) -> MotionResult:  # fmt: skip
+    """Solve for linkages of the given types of a family, which are searched together."""
+    search = LinkageSearch(problem, family, types)
     search_progress = scale_progress(progress, 0.0, 0.9)
     fits = search.fit(search_progress) if problem.is_least_squares else search.run(search_progress)
     log = CandidateLog[LinkageDesign](problem, DEFECT_REASONS)
-    progress(0.9, compose("motion-verifying-best-sixbars", count=search.descents))
+    progress(0.9, compose(family.verifying, count=search.descents))
     mechanisms = search.list_mechanisms(fits)
 
-    def verify_sixbar(mechanism: SixbarMechanism | EightbarMechanism) -> LinkageDesign | None:
+    def verify_linkage(mechanism: SixbarMechanism | EightbarMechanism) -> LinkageDesign | None:
         return verify(problem, mechanism, search.target)
 
-    tried = log.verify_candidates(mechanisms, verify_sixbar, enough=problem.max_designs)
+    tried = log.verify_candidates(mechanisms, verify_linkage, enough=problem.max_designs)
     # All others were examined, but not verified.
     log.reject("unsound", max(search.descents - tried, 0))
     progress(1.0, compose("motion-verified"))
     return MotionResult(
         designs=log.select_designs(make_ranking(problem)),
-        search=log.build_search("sixbar_descents"),
-        summary=describe_sixbars(problem, log, compose("motion-sixbars-fitted", count=search.descents)),
+        search=log.build_search(family.method),
+        summary=describe_sixbars(problem, log, compose(family.fitted, count=search.descents)),
     )

@@ -29,7 +29,12 @@ Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=6)]
+Multiloop = Sixbar | Literal["eightbar"]
+"""Linkages of several loops; an eightbar has any of 88 topologies."""
+
+MULTILOOP_TYPES: tuple[Multiloop, ...] = (*SIXBARS, "eightbar")
+
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Multiloop], Field(min_length=1, max_length=7)]
 """A list of types by name, or ``auto`` for the simplest type that is feasible."""
 
 
@@ -69,16 +74,16 @@ def find_motion_sixbar_contradictions(problem: MotionProblem) -> list[Contradict
     elif problem.chain is not None and (len(problem.positions) > MAX_EXACT_POSITIONS or problem.is_least_squares):
         detail = compose("motion-chain-too-many-positions", maximum=MAX_EXACT_POSITIONS)
         listed.append(Contradiction("/chain", detail))
-    if not (isinstance(stated, list) and select_requested_types(stated, SIXBARS)):
+    if not (isinstance(stated, list) and select_requested_types(stated, MULTILOOP_TYPES)):
         return [*listed, *_check_types(problem)]
-    listed += find_type_contradictions(stated, SIXBARS, list_unsupported(problem))
-    if select_requested_types(stated, SIXBARS) == (UNCLASSED_SIXBAR,):
+    listed += find_type_contradictions(stated, MULTILOOP_TYPES, list_unsupported(problem))
+    if select_requested_types(stated, MULTILOOP_TYPES) == (UNCLASSED_SIXBAR,):
         listed += list_unsupported_stephenson_2(problem)
     return [*listed, *_check_chain_reach(problem)]
 
 
 def list_unsupported(problem: MotionProblem) -> Iterator[Contradiction]:
-    """Yield the given fields that sixbars do not support."""
+    """Yield the given fields that sixbars and eightbars do not support."""
     if not problem.sixbars_possible:
         detail = compose("motion-sixbar-too-many-positions", maximum=MAX_SIXBAR_POSITIONS)
         yield Contradiction("/mechanisms", detail)

@@ -31,6 +31,7 @@ from synthesis.model.linkage.answer import (
     InvertedSliderCrankMechanism,
     LinkageDesign,
     LinkageMechanism,
+    MultiloopMechanism,
     SixbarMechanism,
     SliderCrankMechanism,
 )
@@ -113,7 +114,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: T
         target.size,
         find_min_transmission_angles(bodies[own].evaluate_motion, np.linspace(*used, GRID_SIZE)) if same_branch else {},
         np.array(list(joints.values())),
-        barker=classify_inner_fourbar(mechanism) if isinstance(design, SixbarMechanism) else None,
+        barker=classify_inner_fourbar(mechanism) if isinstance(design, MultiloopMechanism) else None,
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,
@@ -228,7 +229,7 @@ def _describe_sides(
     else:
         sides = (link, Side(complex(joints["O4"][0]), joints["B"]))
     offsets = target.offsets(joints["P"], turns)
-    if isinstance(design, SixbarMechanism) and DRIVER_LINK not in mechanism.links:
+    if isinstance(design, MultiloopMechanism) and DRIVER_LINK not in mechanism.links:
         ground = mechanism.links[GROUND]
         fixed = [complex(joints[name][0]) for name in ground]
         moving = [complex(joints[name][0]) for name in joints if name != BODY_POINT and name not in ground]

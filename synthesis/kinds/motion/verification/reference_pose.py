@@ -16,7 +16,7 @@ from synthesis.model.linkage.answer import (
     FourbarMechanism,
     LinkageDesign,
     LinkageMechanism,
-    SixbarMechanism,
+    MultiloopMechanism,
     SliderCrankMechanism,
 )
 from synthesis.model.linkage.conversion import (
@@ -37,7 +37,7 @@ def move_to_first_target(problem: MotionProblem, design: LinkageDesign) -> Linka
     Return None if the reference is there already, and for sixbars, whose first target is a limit of their crank.
     """
     mechanism = design.mechanism
-    driven = None if isinstance(mechanism, SixbarMechanism) else rebuild_mechanism(mechanism)
+    driven = None if isinstance(mechanism, MultiloopMechanism) else rebuild_mechanism(mechanism)
     if driven is None:
         return None
     place, angle = design.targets[0].input_place, design.targets[0].input_angle

@@ -272,14 +272,16 @@ class _Search:
         weights = target.weights[:fitted][part]
         targets = build_point_targets(target.fitted[:fitted][part], weights)
         soft = replace(self.shape_task, targets=targets)
-        # Only a dense polyline defines the curve between its points; that of a stroke is a part of a turn.
-        dense = problem.is_fitted and len(target.points) >= MIN_POLYLINE_POINTS
-        dense = dense and (problem.closed or not self.full_turn)
+        # The curve of a stroke is compared with its polyline only if it is a part of a turn.
+        comparable = problem.is_fitted and (problem.closed or not self.full_turn)
+        # Only a dense polyline defines the curve between its points.
+        dense = comparable and len(target.points) >= MIN_POLYLINE_POINTS
         # Both directions count equally: the steps of the curve share the total weight of the points.
-        back = float(weights.sum()) if dense else 0.0
-        final = replace(soft, steps=BACK_STEP_COUNT if dense else ANGLE_STEP_COUNT, back=back)
-        if not problem.closed:
-            # A stroke that is only measured at its points may stray between them by many times its size.
+        back = float(weights.sum())
+        final = replace(soft, steps=BACK_STEP_COUNT if dense else ANGLE_STEP_COUNT, back=back if dense else 0.0)
+        if comparable and not problem.closed and len(target.points) >= MIN_DEFINING_POINTS:
+            # A stroke that is only measured at its points may stray between them by many times its size. The sags of a
+            # coarse polyline do no harm here, because the last fit is to its points alone.
             soft = replace(soft, back=back)
         if stance is not None:
             final = replace(

@@ -23,7 +23,7 @@ from synthesis.kinds.function.sixbar.fits import (
     evaluate_margins,
     measure_motion,
 )
-from synthesis.kinds.function.sixbar.mechanism import build_function_sixbar
+from synthesis.kinds.function.sixbar.mechanism import build_function_linkage
 from synthesis.kinds.function.sixbar.starts import draw_starts
 from tests.support.synthesis.function_tasks import FunctionProblem
 
@@ -64,7 +64,7 @@ def stepped(one: SixbarCandidate, n: int, step: float) -> SixbarCandidate:
 @pytest.mark.parametrize("seed", range(3))
 def test_errors_and_transmission_are_those_of_the_driven_linkage(kind, seed):
     one = drawn(kind, seed)
-    mechanism, dials = build_function_sixbar(TASK, one)
+    mechanism, dials = build_function_linkage(TASK, one)
     joints = {name: complex(*place) for name, place in mechanism.skeleton.joints.items()}
     linkage = catalogue.make_sixbar(kind, joints)
     inputs = np.radians(dials.input.place + dials.input.scale * (90.0 * U - dials.input.at))

@@ -12,7 +12,7 @@ from synthesis.fit.linkage.closure import trace_linkage
 from synthesis.fit.linkage.descent import Fit, descend_softly
 from synthesis.fit.linkage.topology import list_forms
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.sixbar.solver import FINAL_STEP_COUNT, FINE_TOLERANCE, SixbarSearch
+from synthesis.kinds.motion.sixbar.solver import FINAL_STEP_COUNT, FINE_TOLERANCE, SIXBAR_FAMILY, LinkageSearch
 from synthesis.registry import parse_problem
 from tests.support.sixbars.motion import SIXBARS, Task, anyhow, false_claim, sound, stated, within_a_box
 
@@ -51,7 +51,7 @@ def test_a_fit_goes_on_to_the_limits_where_positions_are_met_there(kind, number)
     z, inputs, positions = plant_near_limit(np.random.default_rng(9), list_forms(kind, guides=True)[number])
     problem = parse_problem({"kind": "motion", "positions": positions, "mechanisms": [kind], "max_designs": 1})
     assert isinstance(problem, MotionProblem)
-    search = SixbarSearch(problem, (kind,))
+    search = LinkageSearch(problem, SIXBAR_FAMILY, (kind,))
     topology = list(search.kinds)[number]
     joints = (z - complex(search.task.origin)) / search.task.size
     # Headings count from the first position.

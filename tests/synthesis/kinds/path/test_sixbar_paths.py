@@ -21,6 +21,7 @@ from synthesis.kinds.path.multiloop.limits import WORKSPACE_MARGIN, build_packer
 from synthesis.kinds.path.multiloop.shape_matching import find_similar_linkages
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.task.ranking import build_ordering
+from synthesis.kinds.path.task.target_curve import MIN_POLYLINE_POINTS
 from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
 from synthesis.verification.reconstruction import rebuild_mechanism
@@ -178,20 +179,31 @@ def test_auto_searches_eightbars_only_if_sixbars_are_far_off(monkeypatch, mechan
 
 
 # A letter M, drawn from its left foot to its right one, whose inner strokes meet halfway down.
-LETTER_M = np.concatenate(
-    [
-        start + (end - start) * np.linspace(0.0, 1.0, 12, endpoint=False)
-        for start, end in itertools.pairwise([0j, 100j, 40.0 + 40j, 80.0 + 100j, 80.0 + 0j])
-    ]
-)
+CORNERS_OF_M = (0j, 100j, 40.0 + 40j, 80.0 + 100j, 80.0 + 0j)
+
+# A letter X, drawn in one stroke.
+CORNERS_OF_X = (0j, 70.0 + 100j, 70.0 + 0j, 100j)
+
+
+def draw_stroke(corners, count: int) -> np.ndarray:
+    """Return a stroke with so many points on each side."""
+    sides = itertools.pairwise(corners)
+    return np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, count, endpoint=False) for a, b in sides])
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize(("mechanism", "count"), further([("watt_1", 1), ("eightbar", 2)], [("watt_1", 1)]))
-def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too(mechanism, count):
+@pytest.mark.parametrize(
+    ("corners", "points", "mechanism", "count"),
+    further(
+        [(CORNERS_OF_M, 12, "watt_1", 1), (CORNERS_OF_M, 12, "eightbar", 2), (CORNERS_OF_X, 6, "watt_1", 1)],
+        [(CORNERS_OF_M, 12, "watt_1", 1), (CORNERS_OF_X, 6, "watt_1", 1)],
+    ),
+)
+def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too(corners, points, mechanism, count):
     """Fits to the points of a stroke alone used to leave it by its own size between two of them."""
-    stroke = {"points": listed(LETTER_M), "closed": False, "mechanisms": [mechanism], "constraints": {}}
+    letter = draw_stroke(corners, points)
+    stroke = {"points": listed(letter), "closed": False, "mechanisms": [mechanism], "constraints": {}}
     problem = parse_problem(TASK | stroke | {"max_designs": count})
     designs = solve(problem).designs
     assert len(designs) == count
@@ -201,9 +213,11 @@ def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too(mechanis
             np.linspace(0.0, turn[-1] - turn[0], 400)
         )
         assert followed.branch > 0.0
-        sides = np.diff(LETTER_M)
-        gaps = followed.points[:, None] - LETTER_M[:-1]
+        sides = np.diff(letter)
+        gaps = followed.points[:, None] - letter[:-1]
         share = np.clip((gaps * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
         strays = np.abs(gaps - share * sides).min(axis=1)
-        assert strays.max() < 0.05 * problem.task_size
-        assert strays.max() <= 2.0 * design.metrics.max_distance + 1e-6 * problem.task_size
+        # The lines define the curve only if there are many points.
+        dense = len(letter) >= MIN_POLYLINE_POINTS
+        limit = 2.0 * design.metrics.max_distance + 1e-6 * problem.task_size if dense else 0.01 * problem.task_size
+        assert strays.max() <= limit

@@ -12,7 +12,7 @@ from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
 from service.api.http.cached_representation import Representation
-from service.api.routes.studio_bundle import build_bundles, name_bundle
+from service.api.pages.studio_bundle import build_bundles, name_bundle
 
 PAGE = "index.html"
 FIRST = "studio.js"

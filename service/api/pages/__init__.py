@@ -1,0 +1,1 @@
+"""Pages of the service for people: the studio, and explanations of errors."""
