@@ -13,7 +13,6 @@ from typing import NamedTuple
 from kinematics.message import compose
 from synthesis.model.answer import AnyResult, Verification
 from synthesis.model.kind import AnyKind, Progress
-from synthesis.model.linkage.answer import LinkageMetrics
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.protocols import DrivenDesign
 from synthesis.results.practicality import (
@@ -22,6 +21,7 @@ from synthesis.results.practicality import (
     MIN_TRANSMISSION_ANGLE,
     is_judged,
     is_sound,
+    measure_target_error,
     write_error,
 )
 from synthesis.results.remarks import append_remark
@@ -92,17 +92,12 @@ def search_usable(problem: LinkageProblem, result: AnyResult, kind: AnyKind, pro
     listed = result.designs
     if len(listed) + len(near) > problem.max_designs:
         # The design nearest at the targets is kept wherever it is listed.
-        nearest = min(passed, key=_get_target_error)
+        nearest = min(passed, key=measure_target_error)
         kept = max(problem.max_designs - len(near) - 1, 0)
         listed = [nearest, *[design for design in passed if design is not nearest][:kept]]
     designs = [*listed, *near][: problem.max_designs]
     summary = append_remark(result.summary, remark)
     return UsableSearch(result.model_copy(update={"designs": designs, "summary": summary}), True)
-
-
-def _get_target_error(design: DrivenDesign) -> float:
-    metrics = design.metrics
-    return metrics.rms_residual if isinstance(metrics, LinkageMetrics) else 0.0
 
 
 def _drop_limits(design: DrivenDesign) -> DrivenDesign:

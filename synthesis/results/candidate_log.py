@@ -17,7 +17,7 @@ from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import ProblemBase
 from synthesis.model.protocols import DrivenDesign, VerifiedDesign
 from synthesis.results.measurement import check_shared_constraints, select_buildable_first
-from synthesis.results.practicality import sort_by_practice
+from synthesis.results.practicality import keep_nearest, sort_by_practice
 from synthesis.results.remarks import write_name
 from synthesis.verification.shared_constraints import check_workspace_of_design
 
@@ -215,7 +215,8 @@ class CandidateLog(Generic[Design]):
         if isinstance(self.stated, LinkageProblem):
             # Every design of a linkage problem is a driven linkage.
             driven = cast("list[DrivenDesign]", shown)
-            shown = cast("list[Design]", select_buildable_first(self.stated, driven, self.stated.max_designs))
+            driven = select_buildable_first(self.stated, driven, self.stated.max_designs)
+            return cast("list[Design]", keep_nearest(driven, self.stated.max_designs))
         return shown[: self.stated.max_designs]
 
     def _sort_by_practice(self, designs: list[Design]) -> list[Design]:

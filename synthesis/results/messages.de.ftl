@@ -298,8 +298,8 @@ results-sound-found-by-limits =
     }
 results-sound-found-far = Eine zweite Suche, die einen Übertragungswinkel von { $angle }° und ein Gliedverhältnis von { $ratio } forderte, fand keinen Entwurf mit einem Fehler unter { $error }.
 results-sound-before-accurate = Sie stehen vor genaueren Entwürfen, die schlecht übertragen oder sehr ungleiche Glieder haben.
-results-first-for-soundness = Der erste Entwurf hat das { $factor }-Fache des Fehlers von Entwurf { $number }, aber einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
-results-first-less-accurate = Entwurf { $number } ist genauer: Der erste Entwurf hat das { $factor }-Fache seines Fehlers.
+results-first-for-soundness = Der Fehler des ersten Entwurfs ist { $error }, der von Entwurf { $number } { $nearest }; dafür hat der erste einen Übertragungswinkel von { $angle }° statt { $nearest_angle }° und ein Gliedverhältnis von { $ratio } statt { $nearest_ratio }.
+results-first-less-accurate = Entwurf { $number } ist genauer: Sein Fehler ist { $nearest } statt { $error }.
 results-unbuildable-last =
     { $count ->
         [one] Ein Entwurf steht zuletzt, weil er nicht baubar ist: Seine Glieder müssten schmaler als { $share } % der Länge des längsten sein oder würden in jeder Anordnung in Ebenen zusammenstoßen.

@@ -89,8 +89,8 @@ results-sound-found-by-limits =
     }
 results-sound-found-far = A second search, which required a transmission angle of { $angle }° and a link ratio of { $ratio }, found no design with an error below { $error }.
 results-sound-before-accurate = They come before designs that are more accurate but not sound.
-results-first-for-soundness = The first design has { $factor } times the error of design { $number }, but a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
-results-first-less-accurate = Design { $number } is more accurate: the first design has { $factor } times its error.
+results-first-for-soundness = The error of the first design is { $error } and that of design { $number } { $nearest }, but the first design has a transmission angle of { $angle }° instead of { $nearest_angle }° and a link ratio of { $ratio } instead of { $nearest_ratio }.
+results-first-less-accurate = Design { $number } is more accurate: its error is { $nearest } instead of { $error }.
 results-unbuildable-last =
     { $count ->
         [one] One design is listed last because it cannot be built: its links would have to be narrower than { $share } % of the longest link's length, or would collide in every arrangement in planes.

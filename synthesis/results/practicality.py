@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from typing import Generic, NamedTuple, TypeVar
 
 from kinematics.message import compose, join_messages
-from synthesis.model.linkage.answer import BuildMetrics, MotionMetrics
+from synthesis.model.linkage.answer import BuildMetrics, LinkageMetrics, MotionMetrics
 from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import Statement
 from synthesis.model.protocols import DrivenDesign
@@ -56,6 +56,9 @@ ERROR_BAND = 2.0
 NEGLIGIBLE_ERROR = 2e-4
 """Error, as a share of the task's size or in radians, up to which errors are equal: 0.02 mm in 100 mm, and 0.011
 degrees, are finer than the tolerances of usual links and pins."""
+
+MIN_NEARER_RATIO = 1.1
+"""Minimum ratio of the errors of all listed designs to a smaller one that is worth a place among them."""
 
 NOTABLE_ERROR_RATIO = 1.2
 """Ratio of two errors above which the summary explains why the larger one comes first."""
@@ -130,9 +133,30 @@ def sort_by_practice(problem: LinkageProblem, designs: Sequence[Design]) -> list
             for number in classes
             for design in _sort_class(problem, [one for one in passed if problem.classify_design(one) == number])
         ]
-    workable = [design for design in passed if is_workable(problem, design)]
-    others = [design for design in passed if not is_workable(problem, design)]
-    return [*workable, *others, *(design for design in designs if not design.verification.passed)]
+    # What leaves the task between its targets is no answer, however well it is built.
+    passed.sort(key=lambda design: (problem.is_astray(design), not is_workable(problem, design)))
+    return [*passed, *(design for design in designs if not design.verification.passed)]
+
+
+def keep_nearest(designs: Sequence[Design], count: int) -> list[Design]:
+    """Return the first designs, the last of them replaced by the nearest at the targets if all of them are farther.
+
+    A client may want that one most, even if it cannot be built or strays between the targets.
+    """
+    shown, passed = list(designs[:count]), [design for design in designs if design.verification.passed]
+    if count < 2 or len(passed) <= count:
+        return shown
+    nearest = min(passed, key=measure_target_error)
+    least = max(measure_target_error(nearest), NEGLIGIBLE_ERROR)
+    if min(map(measure_target_error, shown)) > MIN_NEARER_RATIO * least:
+        shown[-1] = nearest
+    return shown
+
+
+def measure_target_error(design: DrivenDesign) -> float:
+    """Return the error of a design at its targets alone, as a share of the task's size; 0 if it has no residuals."""
+    metrics = design.metrics
+    return metrics.rms_residual if isinstance(metrics, LinkageMetrics) else 0.0
 
 
 def order_designs(
@@ -278,7 +302,9 @@ def _describe_error(problem: LinkageProblem, numbered: Mapping[int, DrivenDesign
     if ratio <= NOTABLE_ERROR_RATIO:
         return ""
     ours, theirs = first.metrics, other.metrics
-    given: dict[str, str | int] = {"factor": f"{ratio:.2g}", "number": nearest}
+    # A factor would say nothing where the smaller error is a rounding error.
+    errors = {"error": problem.measure_error(first), "nearest": problem.measure_error(other)}
+    given = {"number": str(nearest), **{name: write_error(problem, error) for name, error in errors.items()}}
     if ours.min_transmission_angle <= theirs.min_transmission_angle and ours.link_ratio >= theirs.link_ratio:
         return compose("results-first-less-accurate", **given)
     return compose(

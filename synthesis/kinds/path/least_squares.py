@@ -25,7 +25,6 @@ from synthesis.kinds.path.task.ranking import (
     drop_straying,
     find_min_error,
 )
-from synthesis.kinds.path.task.target_curve import MIN_DEFINING_POINTS
 from synthesis.kinds.path.verification.fourbar import verify_path
 from synthesis.model.kind import Progress, scale_progress
 from synthesis.model.linkage.conversion import FourbarConfiguration, build_fourbar
@@ -79,9 +78,8 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
         linkages = fit_by_shape(problem, second)
         fits.verify_candidates(report_candidates(linkages, second, (0.8, 1.0), "path-driving-linkages"), verify_linkage)
     kept = drop_straying(fits.passed, problem)
-    # Of a few points of an open curve, the points alone may be what the client means; more define the curve.
-    sparse = not problem.closed and len(problem.points) < MIN_DEFINING_POINTS
-    if fits.passed and sparse and (nearest := _find_nearest(fits.passed)) not in kept:
+    # For an open curve the points alone may be what the client means; a design that strays is listed last.
+    if fits.passed and not problem.closed and (nearest := _find_nearest(fits.passed)) not in kept:
         kept.append(nearest)
     fits.withdraw(kept, FAR_REASON)
     progress(1.0, compose("path-verified"))

@@ -54,6 +54,9 @@ ratio."""
 MAX_USABLE_ERROR = 0.02
 """Maximum error of a sound fit, as a share of the task's size, that precedes exact designs which are not sound."""
 
+STRAY_SHARE = 0.01
+"""Excursion, as a share of the task's size, up to which a curve does not count as straying between the points."""
+
 MAX_GEAR_TURNS = 60
 """Maximum number of crank turns after which a geared fivebar must repeat, so that its whole motion can be driven."""
 
@@ -364,6 +367,11 @@ class PathProblem(LinkageProblem):
         if exact:
             return 0
         return 1 if self.measure_error(design) <= MAX_USABLE_ERROR else 3
+
+    def is_astray(self, design: Any) -> bool:
+        """Return whether the curve strays between the points by more than they are missed, and visibly."""
+        excursion = design.metrics.excursion or 0.0
+        return bool(excursion > max(2.0 * design.metrics.max_distance, STRAY_SHARE * self.task_size))
 
     @property
     def is_matched(self) -> bool:

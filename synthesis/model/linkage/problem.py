@@ -322,3 +322,7 @@ class LinkageProblem(ProblemBase):
     def classify_design(self, _design: Any) -> int:
         """Return a class of the design: in the default order, smaller classes precede larger ones."""
         return 0
+
+    def is_astray(self, _design: Any) -> bool:
+        """Return whether a design leaves its task between the targets, so that all others precede it."""
+        return False
