@@ -188,6 +188,7 @@ service-job-part-of-batch = Der Auftrag gehört zu einem Stapel; /v1/batches/{ $
 service-job-ended-without-result = Der Auftrag hat den Status { $status } und kein Ergebnis.
 service-job-without-result-yet = Der Auftrag hat noch kein Ergebnis.
 service-store-silent = Der Auftragsspeicher antwortet nicht.
+service-kernels-missing = Noch kein Rechenprozess ist fertig gestartet: Rechenkerne werden kompiliert, nach einer Installation etwa eine Minute lang.
 service-no-worker-started = Noch kein Rechenprozess ist fertig gestartet.
 service-computation-failed =
     Die Berechnung ist an einem Fehler des Dienstes gescheitert; sein Protokoll hat die Einzelheiten.

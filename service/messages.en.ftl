@@ -186,6 +186,7 @@ service-job-part-of-batch = The job belongs to a batch; remove /v1/batches/{ $ba
 service-job-ended-without-result = The job is { $status } and has no result.
 service-job-without-result-yet = The job has no result yet.
 service-store-silent = The job store does not answer.
+service-kernels-missing = No worker has started yet: numerical kernels are being compiled, which after an installation takes about a minute.
 service-no-worker-started = No worker has finished starting yet.
 service-computation-failed = The computation failed because of a defect of the service; its log has the details.
 service-worker-died = The job was given up because its worker process died in every attempt.

@@ -26,6 +26,8 @@ EXIT_USAGE = 2
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
+    # The processes of a server must not import a module `service` of the folder in which it is started.
+    os.environ["PYTHONSAFEPATH"] = "1"
     command = _build_parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
