@@ -175,11 +175,9 @@ class JobDesk:
 
         ``is_compiling`` says that kernels are missing, for which the first worker waits.
         """
-        try:
-            await run_in_threadpool(self.store.ping)
-        except Exception:  # any error of the database driver means the same here: no store
-            log.exception("the store does not answer")
-            return compose("service-store-silent")
+        fault = await run_in_threadpool(self.store.find_fault)
+        if fault is not None:
+            return compose(fault)
         if self.executor.count_ready_workers() > 0:
             return None
         return compose("service-kernels-missing" if is_compiling else "service-no-worker-started")

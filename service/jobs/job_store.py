@@ -18,6 +18,7 @@ from ulid import ULID
 
 from service.jobs.batches.reading import load_sample, load_samples
 from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
+from service.jobs.store.probe import StoreProbe
 from service.jobs.store.progress_message import write_progress
 from service.jobs.store.schema import (
     QUEUED_CONDITION,
@@ -74,6 +75,11 @@ class JobStore:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
+        self._probe = StoreProbe(engine)
+
+    def find_fault(self) -> str | None:
+        """Return the id of the message why the store takes no writes; None if it does."""
+        return self._probe.find_fault()
 
     def ping(self) -> None:
         """Check that the database answers; SQLAlchemy's error is raised if it does not."""
