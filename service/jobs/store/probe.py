@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import structlog
-from sqlalchemy import Engine, text
+from sqlalchemy import Engine, func, select, text
 from sqlalchemy.exc import DBAPIError, OperationalError
 
 FRESH_S = 1.0
@@ -100,6 +100,17 @@ class StoreProbe:
                 log.error("the disk of the store is full", free=free)
                 return _FULL
         return None
+
+
+def measure_size(engine: Engine) -> tuple[int, int | None]:
+    """Return the size of the database and, for SQLite, the free space on its disk, bytes."""
+    database = engine.url.database
+    if engine.dialect.name == "sqlite" and database:
+        files = [Path(f"{database}{suffix}") for suffix in ("", "-wal")]
+        return sum(file.stat().st_size for file in files if file.exists()), shutil.disk_usage(files[0].parent).free
+    with engine.connect() as connection:
+        size = connection.execute(select(func.pg_database_size(func.current_database()))).scalar_one()
+    return int(size), None
 
 
 def explain_error(error: Exception) -> str:
