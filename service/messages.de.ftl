@@ -187,7 +187,11 @@ service-documents-not-ready = Die Dokumente der Schnittstelle werden noch geschr
 service-job-part-of-batch = Der Auftrag gehört zu einem Stapel; /v1/batches/{ $batch } entfernen.
 service-job-ended-without-result = Der Auftrag hat den Status { $status } und kein Ergebnis.
 service-job-without-result-yet = Der Auftrag hat noch kein Ergebnis.
+service-store-file-lost = Die Datei der Datenbank wurde entfernt oder ersetzt; den Dienst anhalten und die Datei wiederherstellen.
+service-store-full = Der Datenträger der Datenbank ist voll.
+service-store-read-only = Die Datenbank lässt sich nur lesen.
 service-store-silent = Der Auftragsspeicher antwortet nicht.
+service-kernels-missing = Noch kein Rechenprozess ist fertig gestartet: Rechenkerne werden kompiliert, nach einer Installation etwa eine Minute lang.
 service-no-worker-started = Noch kein Rechenprozess ist fertig gestartet.
 service-computation-failed =
     Die Berechnung ist an einem Fehler des Dienstes gescheitert; sein Protokoll hat die Einzelheiten.

@@ -20,7 +20,7 @@ from tests.support.loops import check_each
 from tests.support.sixbars.names import WRONG_NAME
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 
 PLACES = "kinematics|synthesis|service|mechsynth|tests|benchmarks|docs|tools"
 

@@ -1,54 +1,40 @@
-"""The wheel, installed into a virtual environment, works in an empty folder and leaves the packages as they are."""
+"""What the container file installs works in an empty folder and leaves the packages as they are."""
 
 import os
 import re
-import shutil
+import socket
 import subprocess
-import sys
 from pathlib import Path
 
 import httpx
 import pytest
 
 from service.client import Client
+from tests.support.container_file import read_stage, run_first_stage
 from tests.support.service.running import until
 
-ROOT = Path(__file__).parents[1]
-PROJECT = ("kinematics", "synthesis", "service", "mechsynth", "pyproject.toml", "README.md", "LICENSE")
 STARTS = (
     "from synthesis.kinds.path.exact.continuation_starts import load_nine_point_start as start; print(len(start().y))"
 )
+
+FOURBAR = {
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+}
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(900)]
 
 
 def run(*command, **options):
-    return subprocess.run(command, check=True, capture_output=True, text=True, **options).stdout
+    return subprocess.run(
+        command if len(command) > 1 else command[0], check=True, capture_output=True, text=True, **options
+    ).stdout
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory) -> Path:
-    """Built of a copy of the sources, since building writes beside them."""
-    folder = tmp_path_factory.mktemp("sources")
-    for name in PROJECT:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-        copy(ROOT / name, folder / name)
-    pip = (getattr(sys, "_base_executable", sys.executable), "-m", "pip", "--python", sys.executable)
-    run(*pip, "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", folder / "dist", folder)
-    (built,) = (folder / "dist").glob("*.whl")
-    return built
-
-
-@pytest.fixture(scope="module")
-def installed(tmp_path_factory, wheel) -> Path:
-    """The programs of an environment with the users' packages and the wheel, and nothing else."""
-    environment = tmp_path_factory.mktemp("installed") / "environment"
-    run(sys.executable, "-m", "venv", "--without-pip", environment)
-    uv = (Path(sys.executable).with_name("uv"), "pip", "install", "--python", environment / "bin" / "python")
-    locked = ("--require-hashes", "--constraints", ROOT / "requirements.lock")
-    run(*uv, "--quiet", *locked, "-r", ROOT / "pyproject.toml")
-    run(*uv, "--quiet", "--no-deps", wheel)
-    return environment / "bin"
+def installed(tmp_path_factory) -> Path:
+    """The programs of the environment that the container file makes: users' packages and the project, no more."""
+    return run_first_stage(tmp_path_factory.mktemp("image")) / "bin"
 
 
 @pytest.fixture
@@ -58,18 +44,38 @@ def outside(tmp_path) -> dict[str, str]:
     return {**kept, "HOME": str(tmp_path / "home"), "MECHSYNTH_PORT": "0", "MECHSYNTH_COMPILE_AHEAD": "false"}
 
 
+def describe_readiness(url):
+    """What a server says that it waits for; an empty string before it listens."""
+    try:
+        return httpx.get(f"{url}/readyz").json().get("detail", "")
+    except httpx.TransportError:
+        return ""
+
+
 def test_what_is_installed_solves_a_problem_in_an_empty_folder(installed, outside, tmp_path):
     folder = tmp_path / "empty"
     folder.mkdir()
+    # Another program's module of this name does not matter.
+    (folder / "service.py").write_text("raise RuntimeError('a module of the folder in which the service starts')")
     (tmp_path / "home").mkdir()
-    announced = tmp_path / "announced"
-    with announced.open("wb") as out:
-        server = subprocess.Popen([installed / "mechsynth", "serve"], cwd=folder, env=outside, stdout=out)
+    announced, log = tmp_path / "announced", tmp_path / "log"
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        url = f"http://127.0.0.1:{free.getsockname()[1]}"
+    outside = {**outside, "MECHSYNTH_PORT": url.rpartition(":")[2]}
+    with announced.open("wb") as out, log.open("wb") as err:
+        server = subprocess.Popen([installed / "mechsynth", "serve"], cwd=folder, env=outside, stdout=out, stderr=err)
     try:
-        url = until(lambda: "ready on" in announced.read_text() and announced.read_text().split()[-1], 400.0)
+        until(lambda: "kernels are being compiled" in describe_readiness(url), 200.0)
+        until(lambda: "ready on" in announced.read_text(), 400.0)
+        assert "numerical kernels are not compiled yet" in log.read_text()
+        (health,) = (rest for word, rest in read_stage(-1) if word == "HEALTHCHECK")
+        checking = {**outside, "PATH": f"{installed}:{outside['PATH']}"}
+        run("sh", "-c", health.partition(" CMD ")[2], env=checking)
         with Client(url) as client:
             job = client.solve(client.problems()["motion"]["example"])
             drawing = client.file(job.id, 0, "svg")
+            assert client.analyse({"type": "fourbar", **FOURBAR}, {"steps": 12})["valid"]
         assert job.result["designs"][0]["verification"]["passed"]
         assert drawing.startswith(b"<")
         page = httpx.get(url)
@@ -80,7 +86,7 @@ def test_what_is_installed_solves_a_problem_in_an_empty_folder(installed, outsid
     finally:
         server.terminate()
         assert server.wait(60) == 0
-    assert {path.name for path in folder.iterdir()} == {"var"}
+    assert {path.name for path in folder.iterdir()} == {"service.py", "var"}
     assert [*(tmp_path / "home").rglob("*.nbi")]
     assert not [*installed.parent.rglob("mechsynth*/**/*.nbi"), *installed.parent.rglob("kinematics/**/*.nbi")]
 

@@ -2,16 +2,17 @@
 
 import re
 import tomllib
-from fnmatch import fnmatch
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
+from tests.support.container_file import CONTAINER, is_let_through, read_instructions, read_stage
+
 ROOT = Path(__file__).parents[1]
-CONTAINER = ROOT / "docs" / "operations" / "deploy" / "Dockerfile"
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 PIN = re.compile(
     r"^([a-z0-9-]+)==(\S+)(?: ; [^\n]*)? \\\n(?:    --hash=sha256:[0-9a-f]{64}(?: \\)?\n)+    # via", re.MULTILINE
@@ -19,6 +20,8 @@ PIN = re.compile(
 LOCK = (ROOT / "requirements.lock").read_text("utf-8")
 PINS = set(PIN.findall(LOCK))
 FOR_DEVELOPERS = {"pytest", "mypy", "ruff", "hypothesis", "playwright", "schemathesis", "import-linter", "uv"}
+INSTRUCTIONS = read_instructions()
+FINAL = read_stage(-1)
 FOR_CLUSTERS = {"psycopg", "opentelemetry-sdk"}
 
 USERS = SETTINGS["project"]["dependencies"]
@@ -86,48 +89,54 @@ def test_packages_whose_private_parts_are_used_are_bounded_above():
         assert "<" in bounds
 
 
-def instructions() -> list[tuple[str, str]]:
-    lines = re.sub(r"^#.*\n", "", CONTAINER.read_text("utf-8"), flags=re.MULTILINE).replace("\\\n", " ")
-    return [(word, rest) for word, _, rest in (line.partition(" ") for line in lines.splitlines()) if word]
-
-
-def final() -> list[tuple[str, str]]:
-    """The instructions of the last stage, which are what the image has."""
-    every = instructions()
-    return every[max(k for k, (word, _) in enumerate(every) if word == "FROM") :]
-
-
 def test_the_container_runs_as_an_ordinary_user_who_cannot_change_the_programs():
-    words = [word for word, _ in final()]
-    users = [rest for word, rest in final() if word == "USER"]
+    words = [word for word, _ in FINAL]
+    users = [rest for word, rest in FINAL if word == "USER"]
     assert len(users) == 1
-    assert users[0] not in ("root", "0")
-    assert ("RUN", "mechsynth warm") in final()[words.index("USER") :]
-    assert not [rest for word, rest in final() if word == "COPY" and "--chown" in rest]
-    assert final()[-1] == ("CMD", '["mechsynth", "serve"]')
+    assert int(users[0]) > 0
+    assert "HEALTHCHECK" in words
+    assert ("RUN", "mechsynth warm") in FINAL[words.index("USER") :]
+    assert not [rest for word, rest in FINAL if word == "COPY" and "--chown" in rest]
+    assert FINAL[-1] == ("CMD", '["mechsynth", "serve"]')
 
 
 def test_the_container_installs_the_lock_by_its_hashes():
-    assert ("ARG", "EXTRAS=") in instructions()
-    for word, rest in instructions():
+    assert ("ARG", "EXTRAS=") in INSTRUCTIONS
+    for word, rest in INSTRUCTIONS:
         for command in rest.split(" && ") if word == "RUN" else []:
             if "pip install" in command:
                 assert "--require-hashes" in command or "--no-deps" in command
-    assert not [rest for _, rest in final() if "pip" in rest or "--group" in rest]
-    assert not [rest for word, rest in instructions() if word == "ADD"]
+    assert not [rest for _, rest in FINAL if "pip" in rest or "--group" in rest]
+    assert not [rest for word, rest in INSTRUCTIONS if word == "ADD"]
 
 
-@pytest.mark.parametrize("stage", [rest for word, rest in instructions() if word == "FROM"])
+@pytest.mark.parametrize("stage", [rest for word, rest in INSTRUCTIONS if word == "FROM"])
 def test_the_containers_base_is_named_by_its_version(stage):
     image = stage.split()[0]
-    assert re.fullmatch(r"python:3\.1[123]-slim", image)
+    assert re.fullmatch(r"python:3\.\d+-slim", image)
+    python = image.removeprefix("python:").removesuffix("-slim")
+    assert python in SpecifierSet(SETTINGS["project"]["requires-python"])
+    assert f"Programming Language :: Python :: {python}" in SETTINGS["project"]["classifiers"]
 
 
 def test_what_the_container_copies_is_there_and_is_let_through():
-    patterns = (ROOT / ".dockerignore").read_text("utf-8").splitlines()
-    assert patterns[1] == "*"
-    let_through = [line[1:] for line in patterns if line.startswith("!")]
-    copied = [rest for word, rest in instructions() if word == "COPY" and not rest.startswith("--from")]
+    assert (ROOT / ".dockerignore").read_text("utf-8").splitlines()[1] == "*"
+    copied = [rest for word, rest in INSTRUCTIONS if word == "COPY" and not rest.startswith("--from")]
     for source in [name for rest in copied for name in rest.split()[:-1]]:
         assert (ROOT / source).exists()
-        assert any(fnmatch(source, pattern) for pattern in let_through)
+        assert is_let_through(source)
+
+
+def test_the_version_is_the_same_wherever_it_is_named():
+    named = SETTINGS["project"]["version"]
+    assert f"\nversion: {named}\n" in (ROOT / "CITATION.cff").read_text("utf-8")
+    versions = re.findall(r"^## (\d+\.\d+\.\d+)$", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
+    assert versions[0] == named
+
+
+def test_the_unit_starts_the_program_and_keeps_its_data():
+    unit = (CONTAINER.parent / "mechsynth.service").read_text("utf-8")
+    settings = dict(re.findall(r"^(\w+)=(.*)$", unit, re.MULTILINE))
+    assert settings["ExecStart"].split("/")[-1] == "mechsynth serve"
+    assert f"MECHSYNTH_DATA_DIR=/var/lib/{settings['StateDirectory']} " in unit
+    assert f"XDG_CACHE_HOME=/var/cache/{settings['CacheDirectory']}\n" in unit

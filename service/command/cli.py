@@ -26,6 +26,8 @@ EXIT_USAGE = 2
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return the exit status: 0 success, 1 failure, 2 wrong arguments or settings."""
+    # The processes of a server must not import a module `service` of the folder in which it is started.
+    os.environ["PYTHONSAFEPATH"] = "1"
     command = _build_parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
@@ -59,6 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if command.name == "keys":
         return _run_keys(command)
+    if command.name in ("backup", "upgrade"):
+        return _run_maintenance(command)
     return _warm()
 
 
@@ -134,6 +138,22 @@ def _run_keys(command: argparse.Namespace) -> int:
         print(f"mechsynth keys: {failure}", file=sys.stderr)
         return EXIT_FAILURE
     return 0
+
+
+def _run_maintenance(command: argparse.Namespace) -> int:
+    settings = _load_settings()
+    if settings is None:
+        return EXIT_USAGE
+    from service.command.maintenance import MaintenanceFailure, back_up, run_upgrade
+
+    try:
+        if command.name == "backup":
+            back_up(settings, command.file)
+            return 0
+        return 0 if run_upgrade(settings, only_check=command.check) else EXIT_FAILURE
+    except MaintenanceFailure as failure:
+        print(f"mechsynth {command.name}: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
 
 
 def _serve() -> int:
@@ -217,6 +237,10 @@ def _build_parser() -> argparse.ArgumentParser:
     create.add_argument("--further", action="store_true", help="create another key for an existing tenant")
     keys.add_parser("list", help="list the ids of all keys, without the keys themselves")
     keys.add_parser("revoke", help="revoke a key").add_argument("id", help="id of the key")
+    backup = commands.add_parser("backup", help="copy the SQLite database of a service, which may be running")
+    backup.add_argument("file", type=Path, help="a new file for the copy")
+    upgrade = commands.add_parser("upgrade", help="upgrade the tables of the database; a start of the service does too")
+    upgrade.add_argument("--check", action="store_true", help="change nothing; exit status 1 if it would upgrade")
     commands.add_parser("warm", help="compile the kernels and write the documents ahead of the first start")
     return parser
 

@@ -170,11 +170,14 @@ class JobDesk:
             self.notifier.publish(job_id)
         return await self.get(tenant, job_id)
 
-    async def check_readiness(self) -> str | None:
-        """Return None if jobs can be accepted and run, else a sentence that names the missing part."""
-        try:
-            await run_in_threadpool(self.store.ping)
-        except Exception:  # any error of the database driver means the same here: no store
-            log.exception("the store does not answer")
-            return compose("service-store-silent")
-        return None if self.executor.count_ready_workers() > 0 else compose("service-no-worker-started")
+    async def check_readiness(self, is_compiling: bool) -> str | None:
+        """Return None if jobs can be accepted and run, else a sentence that names the missing part.
+
+        ``is_compiling`` says that kernels are missing, for which the first worker waits.
+        """
+        fault = await run_in_threadpool(self.store.find_fault)
+        if fault is not None:
+            return compose(fault)
+        if self.executor.count_ready_workers() > 0:
+            return None
+        return compose("service-kernels-missing" if is_compiling else "service-no-worker-started")

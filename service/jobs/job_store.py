@@ -10,7 +10,7 @@ Several servers and worker hosts may share a store; :mod:`service.jobs.cluster.l
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Connection, Delete, Engine, Update, delete, func, select, text, update
@@ -18,6 +18,7 @@ from ulid import ULID
 
 from service.jobs.batches.reading import load_sample, load_samples
 from service.jobs.store.admission import Repeatable, find_earlier, insert_confirmed, make_once, serialize_inserts
+from service.jobs.store.probe import StoreProbe, measure_size
 from service.jobs.store.progress_message import write_progress
 from service.jobs.store.schema import (
     QUEUED_CONDITION,
@@ -57,6 +58,7 @@ from service.jobs.store.statements import (
     build_row,
 )
 from service.jobs.store.states import FINISHED_STATES, MOVES, UNFINISHED_STATES, Cost, Status
+from service.observability.store_figures import StoreFigures
 
 _SERIAL_THRESHOLD = 8
 """Number of queued jobs above which a tenant's inserts are serialized, so that each job gets its own turn. Below it,
@@ -74,6 +76,11 @@ class JobStore:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
+        self._probe = StoreProbe(engine)
+
+    def find_fault(self) -> str | None:
+        """Return the id of the message why the store takes no writes; None if it does."""
+        return self._probe.find_fault()
 
     def ping(self) -> None:
         """Check that the database answers; SQLAlchemy's error is raised if it does not."""
@@ -152,12 +159,22 @@ class JobStore:
             row = connection.execute(SELECT_BY_ID, {"job": job_id}).one_or_none()
             return load_sample(connection, job_id) if row is None else JobRow(*as_values(row))
 
-    def count_unfinished(self) -> dict[str, int]:
-        """Return the number of queued and of running jobs."""
+    def count_unfinished(self, tenant: str | None = None) -> dict[str, int]:
+        """Return the number of queued and of running jobs, of a tenant or of all."""
         query = select(jobs.c.status, func.count()).where(jobs.c.status.in_(UNFINISHED_STATES)).group_by(jobs.c.status)
+        if tenant is not None:
+            query = query.where(jobs.c.tenant == tenant)
         with self._engine.connect() as connection:
             counts = {row[0]: row[1] for row in connection.execute(query)}
         return {status.value: counts.get(status.value, 0) for status in (Status.QUEUED, Status.RUNNING)}
+
+    def measure(self) -> StoreFigures:
+        """Return the figures of the store for the metrics."""
+        oldest = select(func.min(jobs.c.created_at)).where(QUEUED_CONDITION, IS_SINGLE_JOB)
+        with self._engine.connect() as connection:
+            since = connection.execute(oldest).scalar()
+        age = 0.0 if since is None else (datetime.now(UTC) - datetime.fromisoformat(since)).total_seconds()
+        return StoreFigures(self.count_unfinished(), max(age, 0.0), *measure_size(self._engine))
 
     def load_summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
         """Return the existing jobs among these ids, by id, samples of batches included."""

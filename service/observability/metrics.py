@@ -7,6 +7,7 @@ that clients can neither fill the memory with new values nor put secrets into th
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from importlib.metadata import version
 from typing import Final
 
 import structlog
@@ -21,6 +22,8 @@ from prometheus_client import (
 )
 from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
+
+from service.observability.store_figures import StoreFigures
 
 METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 
@@ -48,6 +51,11 @@ class WorkerMetrics:
             "worker_restarts", "Worker processes that were replaced, by why.", "reason"
         )
         self._workers = self._create_gauge("workers_ready", "Worker processes that have finished starting.")
+        self._queue_seconds = self._create_histogram(
+            "queue_seconds", "From the acceptance of a job to its first attempt.", "cost", _JOB_SECONDS
+        )
+        build = Gauge("mechsynth_build_info", "Version of the program.", ("version",), registry=self.registry)
+        build.labels(version("mechsynth")).set(1)
 
     def _create_counter(self, name: str, text: str, *labels: str) -> Counter:
         return Counter(f"mechsynth_{name}", text, labels, registry=self.registry)
@@ -63,6 +71,10 @@ class WorkerMetrics:
         self._attempts.labels(outcome.replace(" ", "_")).inc()
         if kind is not None:
             self._job_seconds.labels(kind).observe(seconds)
+
+    def observe_wait(self, cost: str, seconds: float) -> None:
+        """Record the time that a job has waited for its first attempt."""
+        self._queue_seconds.labels(cost).observe(seconds)
 
     def count_worker_restart(self, reason: str) -> None:
         """Count a replaced worker process."""
@@ -151,12 +163,12 @@ class Metrics(WorkerMetrics):
         self.registry.register(_Calls(counts))
 
     def watch(
-        self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]
+        self, listeners: Callable[[], int], workers: Callable[[], int], store: Callable[[], StoreFigures]
     ) -> None:
-        """Set the callbacks that give the listeners, ready workers and unfinished jobs by state at each read."""
+        """Set the callbacks that give the listeners, the ready workers and the figures of the store at each read."""
         self._listeners.set_function(listeners)
         self._workers.set_function(workers)
-        self.registry.register(_Queue(queue))
+        self.registry.register(_Store(store))
 
 
 class _Calls(Collector):
@@ -182,26 +194,35 @@ def _create_calls_family() -> GaugeMetricFamily:
     )
 
 
-class _Queue(Collector):
-    """Unfinished jobs, counted in the store, which several servers may share."""
+class _Store(Collector):
+    """Unfinished jobs and sizes, read from the store, which several servers may share."""
 
-    def __init__(self, queue: Callable[[], Mapping[str, int]]) -> None:
-        self._queue = queue
+    def __init__(self, measure: Callable[[], StoreFigures]) -> None:
+        self._measure = measure
 
     def describe(self) -> Iterator[GaugeMetricFamily]:
-        yield _create_queue_family()
+        yield from _create_store_families()
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         try:
-            counts = self._queue()
+            figures = self._measure()
         except Exception:  # any error of the database driver: the other metrics matter even more then
-            log.exception("the unfinished jobs could not be counted")
+            log.exception("the store could not be measured")
             return
-        family = _create_queue_family()
-        for status, jobs in counts.items():
-            family.add_metric([status], jobs)
-        yield family
+        unfinished, oldest, size, free = _create_store_families()
+        for status, jobs in figures.unfinished.items():
+            unfinished.add_metric([status], jobs)
+        oldest.add_metric([], figures.oldest_queued_s)
+        size.add_metric([], figures.size_bytes)
+        if figures.free_bytes is not None:
+            free.add_metric([], figures.free_bytes)
+        yield from (unfinished, oldest, size, free)
 
 
-def _create_queue_family() -> GaugeMetricFamily:
-    return GaugeMetricFamily("mechsynth_jobs_unfinished", "Unfinished jobs in the store.", labels=["status"])
+def _create_store_families() -> tuple[GaugeMetricFamily, ...]:
+    return (
+        GaugeMetricFamily("mechsynth_jobs_unfinished", "Unfinished jobs in the store.", labels=["status"]),
+        GaugeMetricFamily("mechsynth_oldest_job_seconds", "Age of the oldest queued job; 0 without one.", labels=[]),
+        GaugeMetricFamily("mechsynth_store_bytes", "Size of the database.", labels=[]),
+        GaugeMetricFamily("mechsynth_store_free_bytes", "Free space on the disk of a SQLite database.", labels=[]),
+    )

@@ -29,11 +29,13 @@ from service.api.routes import (
     health,
     imports,
     jobs,
+    me,
     metrics,
     outlines,
     parts,
     problems,
     reports,
+    results,
     simulations,
 )
 from service.imports.desk import ImportDesk
@@ -99,9 +101,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
                     **{pool.name: pool.count_calls() for pool in (readers.pool, workshop.pool)},
                 }
             )
-            measured.watch(
-                lambda: sum(each.listeners for each in pollers), executor.count_ready_workers, store.count_unfinished
-            )
+            measured.watch(lambda: sum(each.listeners for each in pollers), executor.count_ready_workers, store.measure)
             polling = [asyncio.create_task(poller.run()) for poller in pollers]
             tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
             yield
@@ -156,7 +156,7 @@ def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         redirect_slashes=False,
         # Problems and designs have one schema each for input and output.
         separate_input_output_schemas=False,
-        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, health.TAG],
+        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, me.TAG, health.TAG],
     )
     problem_details.install(app)
     docs.install(app)
@@ -164,6 +164,7 @@ def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         jobs.router,
         designs.router,
         reports.router,
+        results.router,
         forces.reading,
         forces.stating,
         parts.router,
@@ -175,6 +176,7 @@ def build_application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         outlines.router,
         imports.router,
         problems.router,
+        me.router,
         problem_types.router,
         health.router,
         metrics.router,

@@ -32,6 +32,10 @@ CONSTRAINTS_PART = "demands"
 NICENESS = 10
 """Niceness of processes that compile in parallel with jobs."""
 
+EARLY_LOOK_S = 3.0
+"""Time after which missing kernels are looked for although no worker has started, seconds: then the first worker
+probably compiles those of the most common problems."""
+
 MAX_START_DELAY_S = 10.0
 """Time limit for the first worker's start, after which the search for missing kernels begins in any case, seconds."""
 
@@ -113,10 +117,15 @@ class Compilation:
 
         return [part for part in self._wanted() if not is_compiled(part)]
 
-    def run(self) -> None:
-        """Compile the missing parts; return when all are done, cannot be done, or a stop is requested."""
+    def look(self) -> list[str]:
+        """Look for the missing parts and record them in the state."""
         missing = self.missing
         self.state.look(len(self._wanted()), missing)
+        return missing
+
+    def run(self) -> None:
+        """Compile the missing parts; return when all are done, cannot be done, or a stop is requested."""
+        missing = self.look()
         if not missing or not self._ahead:
             return
         log.info("compiling kernels in the background; jobs compile their own meanwhile", parts=missing)
@@ -143,16 +152,26 @@ class Compilation:
 
     def _begin(self, after: Callable[[], bool]) -> None:
         try:
-            latest = time.monotonic() + MAX_START_DELAY_S
-            while not after() and time.monotonic() < latest and not self._stopping.is_set():
-                self._stopping.wait(_PERIOD_S)
+            began = time.monotonic()
+            self._wait(after, began + EARLY_LOOK_S)
             with IMPORTS:
                 importlib.import_module("kinematics.kernel_marks")  # it takes half a second
+            if not after() and not self._stopping.is_set() and (missing := self.look()):
+                log.warning(
+                    "numerical kernels are not compiled yet; the service is ready when the most common ones are, "
+                    "after an installation in about a minute",
+                    missing=len(missing),
+                )
+            self._wait(after, began + MAX_START_DELAY_S)
             self.run()
         except Exception:  # not fatal: jobs compile the kernels they need
             log.exception("kernels could not be compiled in the background")
         finally:
             self.state.note_end()
+
+    def _wait(self, after: Callable[[], bool], latest: float) -> None:
+        while not after() and time.monotonic() < latest and not self._stopping.is_set():
+            self._stopping.wait(_PERIOD_S)
 
     def _watch(self, processes: Sequence[BaseProcess]) -> None:
         from kinematics.kernel_marks import is_compiled

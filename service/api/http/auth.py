@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Collection, Coroutine
 from ipaddress import ip_address
 from typing import Annotated, Any
 from urllib.parse import urlsplit
@@ -10,11 +10,13 @@ from urllib.parse import urlsplit
 import structlog
 from fastapi import Depends, Request, Response
 from fastapi.routing import APIRoute
+from pydantic import BaseModel
 
 from kinematics.message import compose
 from service.access.gate import ANYBODY, Gate, NoKey, TooOften
 from service.api.http.problem_details import Refusal
 from service.observability import telemetry
+from service.refusals import refuse_faults
 
 SECURITY_SCHEME = "bearer"
 """The name of the security scheme in the OpenAPI document."""
@@ -28,10 +30,16 @@ class GuardedRoute(APIRoute):
     def get_route_handler(self) -> Handler:
         """Return the handler, preceded by the check of the key."""
         handle = self.build_inner_handler()
+        parameters = self.dependant.query_params
+        # A query that is a model refuses unknown parameters itself.
+        has_model = any(_is_model(each.field_info.annotation) for each in parameters)
+        known = None if has_model else {each.alias for each in parameters}
 
         async def handle_after_admission(request: Request) -> Response:
             # Before the body is read, so that strangers cannot make the service parse one.
             request.state.tenant = await _check_admission(request)
+            if known is not None:
+                _require_known_parameters(request, known)
             return await handle(request)
 
         return handle_after_admission
@@ -39,6 +47,21 @@ class GuardedRoute(APIRoute):
     def build_inner_handler(self) -> Handler:
         """Return the framework's handler, which subclasses may wrap."""
         return super().get_route_handler()
+
+
+def _is_model(annotation: object) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _require_known_parameters(request: Request, known: Collection[str]) -> None:
+    """Refuse a query parameter that the operation does not have: it is probably misspelt."""
+    faults = [
+        {"type": "extra_forbidden", "loc": ("query", name), "input": value, "msg": ""}
+        for name, value in request.query_params.items()
+        if name not in known
+    ]
+    if faults:
+        raise refuse_faults(faults, {}, {})
 
 
 async def _check_admission(request: Request) -> str:

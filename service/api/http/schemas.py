@@ -196,17 +196,18 @@ def describe_progress(job: JobSummary) -> JsonObject:
 
 def dump_job(job: JobRow) -> bytes:
     """Return a job as :class:`Job` in JSON. Result and error are stored in English and sent without parsing them."""
-    problem, result, error = fill_defaults(job.kind, job.problem), job.result or "null", job.error or "null"
-    if get_language() != SOURCE_LANGUAGE:
-        result, error = (_translate_stored(answer) for answer in (result, error))
+    problem = fill_defaults(job.kind, job.problem)
+    result, error = (translate_stored(answer or "null") for answer in (job.result, job.error))
     stored = f'"problem":{problem},"result":{result},"error":{error}'
     if isinstance(job, SampleRow):
         stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
     return to_json(describe_job(job))[:-1] + b"," + stored.encode() + b"}"
 
 
-def _translate_stored(answer: str) -> str:
+def translate_stored(answer: str) -> str:
     """Return a stored answer or error in the language of the request."""
+    if get_language() == SOURCE_LANGUAGE:
+        return answer
     read = from_json(answer)
     if read is None:
         return answer

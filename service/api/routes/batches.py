@@ -214,7 +214,8 @@ async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Respon
 async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """Return the table as CSV; numbers have all their digits."""
     _, table = await _load_table(desk, tenant, batch_id)
-    return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8")
+    headers = {"Content-Disposition": f'attachment; filename="batch-{batch_id}.csv"'}
+    return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8", headers=headers)
 
 
 class FrontQuery(BaseModel):

@@ -86,7 +86,13 @@ def _add_route(form: Form, export: Export) -> None:
         job = await get_solved_job(desk, tenant, job_id)
         with measure_span("drawing"):
             content = await draw_in_turn(request, answers, tenant, draw_design, job, number, form)
-        return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _NOSNIFF_HEADERS))
+        # Browsers show pictures, and save other files under this name.
+        shown = "inline" if export.media_type.startswith("image/") and form != "dxf" else "attachment"
+        headers = {
+            **HEADERS.get(form, _NOSNIFF_HEADERS),
+            "Content-Disposition": f'{shown}; filename="{job.kind}-{int(number) + 1}.{form}"',
+        }
+        return Response(content, media_type=export.media_type, headers=headers)
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}.{form}",

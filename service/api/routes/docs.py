@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from base64 import b64encode
+from hashlib import sha256
 from importlib.resources import files
 from threading import Lock
 from typing import Any
@@ -25,10 +28,13 @@ DOCUMENT, OPEN_DOCUMENT = "openapi", "openapi-open"
 
 _ASSETS = "/docs/assets"
 
+_INLINE_SCRIPT = re.compile(rb"<script>(.*?)</script>", re.DOTALL)
+
 
 _TENANT_RESPONSES = problem_details.describe_responses(
     e401="The API key is missing or not valid.",
     e403="The service has no keys, and the host of the request is not this machine.",
+    e422="The operation has no parameter of this name.",
     e429="The key has reached its rate limit.",
     e503="The job store does not answer.",
 )
@@ -56,17 +62,35 @@ def install(app: FastAPI) -> None:
         shown = await documents.find(OPEN_DOCUMENT if await request.app.state.gate.is_open() else DOCUMENT)
         return shown.respond(request, {"Cache-Control": "no-cache"})
 
+    page = get_swagger_ui_html(
+        openapi_url="/openapi.json",
+        title=f"{app.title}: API reference",
+        swagger_js_url=f"{_ASSETS}/swagger-ui-bundle.js",
+        swagger_css_url=f"{_ASSETS}/swagger-ui.css",
+        swagger_favicon_url=f"{_ASSETS}/favicon.png",
+    )
+    page.headers.update(_build_page_headers(bytes(page.body)))
+
     @app.get("/docs", include_in_schema=False)
     async def docs() -> HTMLResponse:
-        return get_swagger_ui_html(
-            openapi_url="/openapi.json",
-            title=f"{app.title}: API reference",
-            swagger_js_url=f"{_ASSETS}/swagger-ui-bundle.js",
-            swagger_css_url=f"{_ASSETS}/swagger-ui.css",
-            swagger_favicon_url=f"{_ASSETS}/favicon.png",
-        )
+        return page
 
     app.mount(_ASSETS, StaticFiles(directory=str(files("fastapi_offline") / "static")), name="docs-assets")
+
+
+def _build_page_headers(page: bytes) -> dict[str, str]:
+    """Return headers that let the page run its own scripts and ask this service, and nothing else."""
+    inline = (b64encode(sha256(script).digest()).decode() for script in _INLINE_SCRIPT.findall(page))
+    scripts = " ".join(["'self'", *(f"'sha256-{digest}'" for digest in inline)])
+    policy = (
+        f"default-src 'none'; script-src {scripts}; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+    return {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+    }
 
 
 def pack_documents(app: FastAPI) -> dict[str, bytes]:
@@ -89,6 +113,11 @@ def _complete(document: dict[str, Any]) -> None:
             "description": "API key, if the service has keys; without keys it is open to its own machine only.",
         }
     }
+    # The framework adds its own kind of 422 to every operation with parameters; that response does not exist here.
+    for methods in document["paths"].values():
+        for operation in methods.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
     for path, methods in document["paths"].items():
         for operation in methods.values():
             is_guarded = path.startswith("/v1/")
@@ -96,11 +125,6 @@ def _complete(document: dict[str, Any]) -> None:
             if is_guarded:
                 _add(operation, _TENANT_RESPONSES)
             _add(operation, _CONNECTION_RESPONSES)
-    # The framework adds its own kind of 422 to every operation with parameters; that response does not exist here.
-    for methods in document["paths"].values():
-        for operation in methods.values():
-            if "HTTPValidationError" in str(operation["responses"].get("422")):
-                del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         schemas.pop(name, None)
     simplify_schemas(document)

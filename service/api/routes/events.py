@@ -44,9 +44,10 @@ _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 def describe_events(item: str) -> JsonObject:
     """Return the media type object of a stream of events whose state is the component ``item``.
 
-    OpenAPI has a keyword for the items of a stream, `itemSchema`, only since version 3.2.
+    OpenAPI has a keyword for the items of a stream, `itemSchema`, only since version 3.2. A `schema` would be taken for
+    that of the whole stream by some programs and for that of an event by others, so there is none.
     """
-    return {"schema": {"type": "string"}, "x-item-schema": _build_event_schema(item)}
+    return {"x-item-schema": _build_event_schema(item)}
 
 
 def _build_event_schema(item: str) -> JsonObject:

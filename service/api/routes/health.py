@@ -31,9 +31,10 @@ async def readyz(request: Request) -> Readiness:
     After an installation the numerical kernels are compiled in parallel with the first jobs; `kernels` has the
     progress.
     """
-    missing = await request.app.state.desk.check_readiness()
+    progress = request.app.state.kernels.progress
+    is_compiling = progress is not None and progress.compiled < progress.total
+    missing = await request.app.state.desk.check_readiness(is_compiling)
     if missing is not None:
         raise Refusal(503, "not-ready", "service-title-not-ready", missing, headers={"Retry-After": "1"})
-    progress = request.app.state.kernels.progress
     kernels = None if progress is None else Kernels(compiled=progress.compiled, total=progress.total)
     return Readiness(status="ok", kernels=kernels)

@@ -7,12 +7,17 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Literal, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Literal, ParamSpec, TypeVar
 from urllib.parse import unquote, urlsplit
 
 import structlog
 from sqlalchemy import URL, Connection, Engine, NullPool, create_engine, event, func, make_url, select
 from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, SQLAlchemyError, TimeoutError
+
+from service.jobs.store.probe import FileWatch
+
+if TYPE_CHECKING:
+    from alembic.config import Config
 
 BUSY_TIMEOUT_S = 10.0
 """Time that a writer waits for another one, seconds. A write takes a millisecond, so healthy systems never reach it."""
@@ -50,6 +55,11 @@ _POSTGRESQL_OPTIONS = {
 class LaterTables(Exception):
     """The tables belong to a later version; the message is for the operator."""
 
+    def __init__(self) -> None:
+        super().__init__(
+            "the database tables belong to a later version of mechsynth; start that version or restore a dump"
+        )
+
 
 def connect(url: str, *, durable: bool) -> Engine:
     """Create an engine for the store at ``url``.
@@ -81,10 +91,21 @@ def connect(url: str, *, durable: bool) -> Engine:
     engine = create_engine(parsed, pool_size=8, max_overflow=32, connect_args={"timeout": BUSY_TIMEOUT_S})
     synchronous: Literal["FULL", "NORMAL"] = "FULL" if durable else "NORMAL"
 
+    file = find_sqlite_file(url)
+    watch = None if file is None else FileWatch(file)
+
     @event.listens_for(engine, "connect")
     def _prepare(connection: sqlite3.Connection, _record: object) -> None:
         connection.execute("PRAGMA journal_mode=WAL")
         connection.execute(f"PRAGMA synchronous={synchronous}")
+        if watch is not None:
+            watch.note_opened()
+
+    if watch is not None:
+        # Two microseconds before each use. Otherwise jobs would be accepted and solved in a file that nobody finds
+        # again, and a new connection would empty the log of the file that is missing.
+        event.listen(engine, "do_connect", lambda *_: watch.require_same())
+        event.listen(engine, "checkout", lambda *_: watch.require_same())
 
     return engine
 
@@ -153,19 +174,45 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
     """
     # The import of Alembic takes a tenth of a second, which only the server needs to spend.
     from alembic import command
-    from alembic.config import Config
     from alembic.util import CommandError
 
-    config = Config()
-    config.set_main_option("script_location", str(Path(__file__).parents[1] / "migrations").replace("%", "%%"))
+    config = _configure_alembic()
     with _begin_exclusive(engine) as connection:
         config.attributes["connection"] = connection
         try:
             command.upgrade(config, revision)
         except CommandError as error:  # the revision of the tables is unknown here
-            raise LaterTables(
-                "the database tables belong to a later version of mechsynth; start that version or restore a dump"
-            ) from error
+            raise LaterTables from error
+
+
+def list_missing_revisions(engine: Engine) -> list[str]:
+    """Return the revisions of the tables from the present one to the newest, in order, without changing anything.
+
+    Raises
+    ------
+    LaterTables
+        If the tables are beyond every revision known to this version.
+    """
+    from alembic.migration import MigrationContext
+    from alembic.script import ScriptDirectory
+    from alembic.script.revision import ResolutionError
+
+    scripts = ScriptDirectory.from_config(_configure_alembic())
+    with engine.connect() as connection:
+        current = MigrationContext.configure(connection).get_current_revision()
+    try:
+        steps = [step.revision for step in scripts.iterate_revisions("head", current or "base")]
+    except ResolutionError as error:
+        raise LaterTables from error
+    return steps[::-1]
+
+
+def _configure_alembic() -> Config:
+    from alembic.config import Config
+
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).parents[1] / "migrations").replace("%", "%%"))
+    return config
 
 
 @contextmanager

@@ -27,6 +27,7 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 import pebble
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
+from ulid import ULID
 
 from service.jobs import faults
 from service.jobs.batches.store import BatchStore
@@ -200,6 +201,9 @@ class Lane(threading.Thread):
             self._job = job
             if job.job_id in self._cancelled:
                 self._stop_job("cancelled")
+        if job.attempt == 1 and job.batch is None:
+            # The id of a job has the time of its creation. The clocks of server and host may differ a little.
+            self._metrics.observe_wait(job.cost, max(0.0, time.time() - ULID.from_str(job.job_id).timestamp))
         try:
             self._run_job(job)
         except Exception:  # a defect in this code fails this job only, not later ones

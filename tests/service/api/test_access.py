@@ -130,6 +130,23 @@ def test_another_tenants_running_job_is_not_cancelled(shared):
 
 
 @pytest.mark.slow
+def test_limits_and_use_are_ones_own(shared):
+    gate = shared.folder / "open"
+    gate.unlink(missing_ok=True)
+    ours, theirs = shared.clients["acme"], shared.clients["globex"]
+    job = post(ours, GATED, wait=None).json()
+    until(lambda: ours.get("/v1/me").json()["use"] == {"queued_jobs": 0, "running_jobs": 1})
+    assert theirs.get("/v1/me").json()["use"] == {"queued_jobs": 0, "running_jobs": 0}
+    gate.touch()
+    until(lambda: ours.get("/v1/me").json()["use"]["running_jobs"] == 0)
+    assert ours.get(f"/v1/jobs/{job['id']}").json()["status"] == "succeeded"
+    told = ours.get("/v1/me").json()
+    assert told["tenant"] == "acme"
+    assert told["limits"]["body_bytes"] == 1 << 20
+    assert (told["limits"]["queued_jobs"], told["limits"]["rate"]) == (QUEUE, "100000/minute")
+
+
+@pytest.mark.slow
 def test_lists_are_of_ones_own_jobs(shared):
     created = {name: {post(client).json()["id"] for _ in range(3)} for name, client in shared.clients.items()}
     for name, client in shared.clients.items():

@@ -1,5 +1,7 @@
 """Everything else of the HTTP contract: errors, documents, health."""
 
+import base64
+import hashlib
 import json
 import re
 import socket
@@ -106,6 +108,25 @@ def test_every_kind_is_listed_with_an_example_that_runs(client):
         assert job["result"]["designs"]
 
 
+def test_the_reference_may_run_its_own_scripts_only(client):
+    answer = client.get("/docs")
+    policy = answer.headers["content-security-policy"]
+    (script,) = re.findall(r"<script>(.*?)</script>", answer.text, re.DOTALL)
+    assert base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() in policy
+    assert "default-src 'none'" in policy
+    assert "frame-ancestors 'none'" in policy
+    assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+@pytest.mark.parametrize(
+    "path", ["/v1/problems", "/v1/problems/cam", "/v1/jobs", "/v1/jobs/01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "/v1/batches"]
+)
+def test_an_unknown_parameter_is_refused(client, path):
+    refused = client.get(path, params={"limitt": 3})
+    assert (refused.status_code, refused.json()["type"]) == (422, "/problems/invalid-request")
+    assert [fault["path"] for fault in refused.json()["errors"]] == ["/query/limitt"]
+
+
 @pytest.mark.slow
 def test_the_reference_needs_no_other_host(client):
     page = client.get("/docs").text
@@ -136,7 +157,9 @@ def test_the_openapi_document_is_complete(openapi):
         "delete_job", "draw_assembly", "draw_design", "export_assembly_glb", "export_assembly_step",
         "export_design_csv", "export_design_dxf", "export_design_mjcf", "export_design_modelica",
         "export_design_script", "export_design_urdf", "export_part_3mf", "export_part_dxf", "export_part_step",
-        "export_part_stl", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "get_problem_kind",
+        "export_part_stl", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "get_me",
+        "get_problem_kind",
+        "get_result",
         "healthz",
         "import_curves", "list_batches", "list_jobs", "list_problems", "make_parts", "metrics", "move_design",
         "open_design_in_pmks", "read_outlines", "readyz", "report_job", "tabulate_batch",
@@ -176,6 +199,17 @@ def test_the_examples_of_the_openapi_document_run(client, openapi):
     assert body["examples"]
     for example in body["examples"].values():
         assert client.post("/v1/analyses", json=example["value"]).status_code == 200
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_result_of_a_job_is_had_alone(client, language):
+    headers = {"Accept-Language": language}
+    body = {"problem": {"kind": "gear_train", "ratio": "22/7"}}
+    job = client.post("/v1/jobs", json=body, headers={**headers, "Prefer": "wait=30"}).json()
+    answer = client.get(f"/v1/jobs/{job['id']}/result", headers=headers)
+    assert answer.json() == job["result"]
+    again = client.get(answer.request.url, headers={**headers, "If-None-Match": answer.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
 
 
 def test_a_wait_has_a_longest():

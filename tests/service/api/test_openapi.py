@@ -50,7 +50,7 @@ def test_every_operation_says_with_what_it_may_be_refused(document):
         for method, operation in methods.items():
             expected = {"408", "431"}
             if path.startswith("/v1/"):
-                expected |= {"401", "403", "429", "503"}
+                expected |= {"401", "403", "422", "429", "503"}
             if "requestBody" in operation:
                 expected |= {"400", "413", "415", "422"}
             assert expected <= operation["responses"].keys(), f"{method} {path}"

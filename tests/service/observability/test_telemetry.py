@@ -4,6 +4,7 @@ import json
 import re
 import socket
 import threading
+from importlib.metadata import version
 
 import httpx
 import pytest
@@ -87,6 +88,10 @@ def test_jobs_are_measured_by_kind_and_outcome(server):
     attempts = {dict(key[1:])["outcome"]: n for key, n in growth.items() if key[0] == "mechsynth_job_attempts_total"}
     assert attempts == {"succeeded": 2, "failed": 1, "worker_lost": 1, "timeout": 1}
     assert growth[("mechsynth_job_seconds_count", ("kind", "motion"))] == 3
+    assert growth[("mechsynth_queue_seconds_count", ("cost", "short"))] == 4, (
+        "a job that is tried again has waited once"
+    )
+    assert 0.0 < growth[("mechsynth_queue_seconds_sum", ("cost", "short"))] < 60.0
     assert growth[("mechsynth_jobs_accepted_total", ("kind", "motion"))] == 4
     restarts = {dict(key[1:])["reason"]: n for key, n in growth.items() if key[0] == "mechsynth_worker_restarts_total"}
     assert restarts == {"lost": 1, "timeout": 1}
@@ -106,6 +111,11 @@ def test_the_queue_and_the_workers_are_seen(server):
     assert seen[("mechsynth_jobs_unfinished", ("status", "queued"))] == 2
     assert seen[("mechsynth_jobs_unfinished", ("status", "running"))] == 1
     assert seen[("mechsynth_workers_ready",)] == 1
+    assert 0.0 < seen[("mechsynth_oldest_job_seconds",)] < 600.0
+    assert server.sample("mechsynth_oldest_job_seconds") == 0.0
+    assert seen[("mechsynth_store_bytes",)] > 1e4
+    assert seen[("mechsynth_store_free_bytes",)] > 1e6
+    assert server.sample("mechsynth_build_info", version=version("mechsynth")) == 1.0
     assert seen[("process_resident_memory_bytes",)] > 1e6
 
 
