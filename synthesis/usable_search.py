@@ -65,6 +65,9 @@ def search_usable(problem: LinkageProblem, result: AnyResult, kind: AnyKind, pro
     statement = None if kind.usable is None else kind.usable(limited)
     if statement is None or statement.find_contradictions():
         return UsableSearch(result, result.search.complete)
+    # All solutions are known: only another method or type could add designs.
+    if result.search.complete and statement == limited:
+        return UsableSearch(result, True)
     second = kind.solve(statement, progress)
     found = [_drop_limits(design) for design in second.designs if design.verification.passed]
     # Whether all solutions of the task as stated were found does not depend on the second search.

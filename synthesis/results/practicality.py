@@ -26,7 +26,7 @@ from synthesis.model.linkage.problem import LinkageProblem
 from synthesis.model.problem import Statement
 from synthesis.model.protocols import DrivenDesign
 from synthesis.results.buildability import MIN_RELATIVE_WIDTH, is_buildable
-from synthesis.results.ranking import RESIDUAL_ROUNDING
+from synthesis.results.ranking import RESIDUAL_ROUNDING, sort_designs
 from synthesis.verification.measures import compute_quality
 
 Design = TypeVar("Design", bound=DrivenDesign)
@@ -134,7 +134,7 @@ def sort_by_practice(problem: LinkageProblem, designs: Sequence[Design]) -> list
             for design in _sort_class(problem, [one for one in passed if problem.classify_design(one) == number])
         ]
     # What leaves the task between its targets is no answer, however well it is built.
-    passed.sort(key=lambda design: (problem.is_astray(design), not is_workable(problem, design)))
+    passed = sort_designs(passed, problem.is_astray, lambda design: not is_workable(problem, design))
     return [*passed, *(design for design in designs if not design.verification.passed)]
 
 

@@ -159,9 +159,10 @@ def limit_offered(search: Search, count: int) -> Search:
 
 def merge_searches(first: Search, second: Search) -> Search:
     """Add the counts of two searches."""
+    methods = dict.fromkeys([*first.method.split(", "), *second.method.split(", ")])
     return second.model_copy(
         update={
-            "method": f"{first.method}, {second.method}",
+            "method": ", ".join(methods),
             # Two partial searches are not exhaustive together.
             "complete": False,
             "candidates": first.candidates + second.candidates,

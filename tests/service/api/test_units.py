@@ -140,7 +140,7 @@ PURE = {
     "PlanetaryMechanism": {"addendum"},  # in modules
     "PlanetaryUnit": {"mesh_efficiency", "min_contact_ratio"},
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's
-    "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
+    "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency", "min_efficiency"},
     "Pulse": {"area"},  # an energy
     "Quality": {"yield"},
     "QuickReturnMetrics": {"time_ratio", "link_ratio", "relative_link_width", "reach", "quality"},

@@ -27,7 +27,7 @@ def stated() -> tuple[dict[str, Any], dict[str, Any]]:
     )
     assert example is not None
     assert beam is not None
-    return json.loads(example[1]), {"polygon": json.loads(beam[1])}
+    return json.loads(example[1])["problem"], {"polygon": json.loads(beam[1])}
 
 
 def floats(value: Any) -> Any:

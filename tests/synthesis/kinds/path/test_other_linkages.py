@@ -56,7 +56,8 @@ def test_eleven_points_of_a_geared_fivebar_are_met():
     motion = drive(linkage, np.array(ELEVEN), order=0)
     assert motion.valid.all()
     points = 20.0 * motion.joints["P"][0]
-    result = answer(points, "geared_fivebar", gear_ratio=-2.0)
+    # In the default order, fits that transmit better would be searched and listed too.
+    result = answer(points, "geared_fivebar", gear_ratio=-2.0, rank_by="accuracy")
     assert result.search.method == "family_search"
     assert result.designs
     size = np.abs(points[:, None] - points).max()
