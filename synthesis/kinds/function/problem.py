@@ -276,6 +276,19 @@ class FunctionProblem(LinkageProblem):
         return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(MULTILOOP_TYPES)
 
     @property
+    def limits_place(self) -> bool:
+        """Whether the place or the size of the linkage is limited."""
+        limits = self.constraints
+        chosen = (
+            limits.fixed_pivot_region,
+            limits.moving_pivot_region,
+            limits.link_length,
+            self.fixed_pivots,
+            self.space,
+        )
+        return any(one is not None for one in chosen)
+
+    @property
     def has_given_zeros(self) -> bool:
         """Whether a zero is given; zeros are measured from the ground line of a fourbar."""
         return isinstance(self.zeros, Zeros) and (self.zeros.input, self.zeros.output) != (None, None)

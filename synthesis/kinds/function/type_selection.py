@@ -20,6 +20,7 @@ from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.fourbar.task import make_function_task
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.ranking import get_error, rank_by_error
+from synthesis.kinds.function.sixbar.fits import list_ratios
 from synthesis.kinds.function.sixbar.mechanism import build_function_linkage
 from synthesis.kinds.function.sixbar.solver import SixbarSearch
 from synthesis.kinds.function.statement.mechanism_types import SIXBARS, Multiloop, list_unsupported
@@ -85,6 +86,9 @@ more links must pay for themselves, and a client can ask for them."""
 
 ATTEMPTS_PER_DESIGN = 6
 """Maximum number of verified linkages per requested design."""
+
+PLACED_ATTEMPTS = 40
+"""Minimum of that number if the place is limited, where many linkages do not fit."""
 
 REASONS = DEFECT_REASONS | LENGTH_REASONS | {"covers_range": "branch_defect", "dials": "reversed_link"}
 """Rejection reason by failed check; other checks use their own name."""
@@ -162,8 +166,21 @@ def solve_linkages(problem: FunctionProblem, types: Sequence[Multiloop], progres
     """Solve for sixbars or eightbars of some types, best by the criterion first."""
     if problem.determines_watts:
         return solve_nine_pairs(problem, REASONS, progress)
+    ratios = list_ratios(problem)
+    for n, ratio in enumerate(ratios):
+        part = scale_progress(progress, n / len(ratios), (n + 1) / len(ratios))
+        result = _solve_within(problem, types, ratio, part)
+        if select_passing(result.designs):
+            break
+    return result
+
+
+def _solve_within(
+    problem: FunctionProblem, types: Sequence[Multiloop], ratio: float, progress: Progress
+) -> FunctionResult:  # fmt: skip
+    """Solve for sixbars or eightbars within a link ratio."""
     task = make_function_task(problem)
-    search = SixbarSearch(task)
+    search = SixbarSearch(task, ratio)
     sifting = CandidateLog[FunctionDesign](problem, REASONS)
     found = []
     for n, name in enumerate(types):
@@ -182,7 +199,8 @@ def solve_linkages(problem: FunctionProblem, types: Sequence[Multiloop], progres
             return None  # at a toggle no position can be computed
 
     # Several tries per design, because some fail verification.
-    rows = range(min(len(found), ATTEMPTS_PER_DESIGN * problem.max_designs))
+    most = max(ATTEMPTS_PER_DESIGN * problem.max_designs, PLACED_ATTEMPTS if problem.limits_place else 0)
+    rows = range(min(len(found), most))
     tried = sifting.verify_candidates(rows, verify_linkage, enough=problem.max_designs)
     sifting.reject(OUTRANKED_REASON, search.weighed - tried)
     progress(1.0, compose("function-verified"))

