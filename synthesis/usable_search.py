@@ -70,7 +70,7 @@ def search_usable(problem: LinkageProblem, result: AnyResult, kind: AnyKind, pro
         return UsableSearch(result, True)
     second = kind.solve(statement, progress)
     found = [_drop_limits(design) for design in second.designs if design.verification.passed]
-    # Whether all solutions of the task as stated were found does not depend on the second search.
+    # The second search does not change whether the first one found all solutions of the task.
     search = merge_searches(result.search, second.search).model_copy(update={"complete": result.search.complete})
     result = result.model_copy(update={"search": search})
     if not found:

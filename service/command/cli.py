@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -76,8 +77,8 @@ def _warm() -> int:
     except WarmingFailure as failure:
         print(f"mechsynth warm: {failure}", file=sys.stderr)
         return EXIT_FAILURE
-    for _ in write_documents(build_documents):
-        pass  # nobody but the cache folder needs them now
+    # Building them fills the cache folder; the documents themselves are not needed here.
+    deque(write_documents(build_documents), maxlen=0)
     return 0
 
 

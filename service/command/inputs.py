@@ -107,9 +107,9 @@ def _parse_table(source: str, text: str) -> JsonObject:
     return problem
 
 
-def _find_length_unit(source: str, stated: Sequence[tuple[str, str | None]]) -> str | None:
+def _find_length_unit(source: str, columns: Sequence[tuple[str, str | None]]) -> str | None:
     """Return the length unit of the columns; None if they state none."""
-    units = {name: unit for name, unit in stated if unit is not None}
+    units = {name: unit for name, unit in columns if unit is not None}
     wrong = next((name for name in units if "angle" in name and units[name].lower() not in _DEGREES), None)
     if wrong is not None:
         raise SourceError(f"{source}: {wrong} is in {units[wrong]}; angles are in degrees")

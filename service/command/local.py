@@ -8,11 +8,15 @@ import socket
 import sys
 import uuid
 from collections.abc import Callable
+from typing import TYPE_CHECKING, cast
 from urllib.parse import urlsplit
 
 from service import client as service
 from synthesis.model.json_object import JsonObject
 from synthesis.model.problem import ProblemBase
+
+if TYPE_CHECKING:
+    from service.render import Form
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 """Address of a service on this machine."""
@@ -88,7 +92,8 @@ def draw_here(job: service.Job, problem: ProblemBase, number: int, form: str) ->
             result.designs[number],
             problem,
             make_heading(problem, job.label, number),
-            form,  # type: ignore[arg-type]
+            # The command line accepts these formats only.
+            cast("Form", form),
         )
     except (NoSuchExport, NotBuilt):
         return None

@@ -33,7 +33,7 @@ NICENESS = 10
 """Niceness of processes that compile in parallel with jobs."""
 
 EARLY_LOOK_S = 3.0
-"""Time after which missing kernels are looked for although no worker has started, seconds: then the first worker
+"""Time after which the search for missing kernels begins although no worker has started, seconds: the first worker then
 probably compiles those of the most common problems."""
 
 MAX_START_DELAY_S = 10.0

@@ -41,7 +41,8 @@ class Representation:
     def from_packed(cls, packed: bytes, media_type: str) -> Representation:
         """Create the representation of content that is compressed with gzip."""
         representation = cls(gzip.decompress(packed), media_type)
-        representation.__dict__["gzip_content"] = packed  # where the property keeps it, so that nobody packs it again
+        # The cached property finds its value here and does not compress the content again.
+        representation.__dict__["gzip_content"] = packed
         return representation
 
     @cached_property

@@ -106,7 +106,8 @@ class Documents:
                 log.error("the process that builds the documents of the API has died")
                 # From now on nothing but a request makes it try again.
                 after = self._asked.is_set
-        except Exception:  # requests are answered 503 then
+        except Exception:
+            # An error that ends this thread would otherwise leave no trace. Requests for documents are answered 503.
             log.exception("the documents of the API could not be prepared")
 
     def _serve(self, documents: Mapping[str, bytes]) -> None:
@@ -201,7 +202,8 @@ def _write_folder(folder: Path, documents: Mapping[str, bytes]) -> None:
         try:
             for name, content in documents.items():
                 (written / f"{name}{_SUFFIX}").write_bytes(content)
-            written.rename(folder)  # at once, so that nobody reads a part of them
+            # Other servers find either no folder or a complete one.
+            written.rename(folder)
         finally:
             shutil.rmtree(written, ignore_errors=True)
         for other in folder.parent.glob("documents-*"):

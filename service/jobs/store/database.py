@@ -102,8 +102,8 @@ def connect(url: str, *, durable: bool) -> Engine:
             watch.note_opened()
 
     if watch is not None:
-        # Two microseconds before each use. Otherwise jobs would be accepted and solved in a file that nobody finds
-        # again, and a new connection would empty the log of the file that is missing.
+        # The check costs two microseconds before each use. Without it, jobs would be stored in a removed file and lost
+        # with the next restart, and a new connection would empty the log of the missing file.
         event.listen(engine, "do_connect", lambda *_: watch.require_same())
         event.listen(engine, "checkout", lambda *_: watch.require_same())
 

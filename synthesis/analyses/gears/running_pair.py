@@ -130,13 +130,13 @@ class GivenGearPair(Statement):
 
     @model_validator(mode="before")
     @classmethod
-    def _fill_module(cls, stated: object) -> object:
+    def _fill_module(cls, given: object) -> object:
         """Take the module from the diametral pitch."""
-        if not isinstance(stated, dict) or stated.get("module") is not None:
-            return stated
-        pitch = stated.get("diametral_pitch")
+        if not isinstance(given, dict) or given.get("module") is not None:
+            return given
+        pitch = given.get("diametral_pitch")
         # Other values are refused by the field itself.
-        return {**stated, "module": 1.0 / pitch} if isinstance(pitch, int | float) and pitch > 0.0 else stated
+        return {**given, "module": 1.0 / pitch} if isinstance(pitch, int | float) and pitch > 0.0 else given
 
     @model_validator(mode="after")
     def _check_module(self) -> Self:

@@ -44,7 +44,7 @@ SWEEP_COUNT = 361
 def add_plain_guide(problem: MotionProblem, result: MotionResult) -> MotionResult:
     """Return a result with the plain guide that does the job and a summary that begins with it; unchanged if none does.
 
-    A problem that chooses dyads, types or a driver requests a linkage, so that no guide is looked for.
+    A problem that chooses dyads, types or a driver requests a linkage, so no guide is searched for.
     """
     if not _is_open(problem):
         return result

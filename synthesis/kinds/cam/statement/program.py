@@ -170,7 +170,7 @@ class ProgramStatement:
                 conditions = self.convert_conditions(segment)
                 if compute_polynomial_ends(math.radians(segment.angle), conditions) is None:
                     contradictions.append(Contradiction(f"{where}/conditions", compose("cam-conditions-dependent")))
-        # A polynomial may move from the height at which it continues to its only stated one.
+        # A polynomial with one given height may still move to it from the height at which the previous segment ends.
         moves = any(_has_motion(segment) for segment in self.segments) or self._travels()
         if not contradictions and not moves:
             contradictions.append(Contradiction("/segments", compose("cam-follower-rests")))
