@@ -81,6 +81,7 @@ def measure(cache: Path, idle_s: float) -> dict[str, float]:
             job = client.post("/v1/jobs", json=body, headers={"Prefer": "wait=30"}).json()
             figures["first drawing"] = _time(client, "GET", f"/v1/jobs/{job['id']}/designs/0.svg")
             figures["first import"] = _time(client, "POST", "/v1/imports", content=DRAWING)
+        # Memory is compared after background work has ended, as an idle server has it.
         time.sleep(idle_s)
         processes = {pid: "server", **_children(pid)}
         figures["server, MB"] = _memory(pid, "Rss")

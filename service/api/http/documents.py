@@ -15,7 +15,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
@@ -86,6 +86,7 @@ class Documents:
         self._asked.set()
         latest = time.monotonic() + MAX_WAIT_S
         while name not in self._served and time.monotonic() < latest and not self._stopping.is_set():
+            # The thread that receives the documents belongs to no event loop, so its progress is polled.
             await asyncio.sleep(_PERIOD_S)
         if name not in self._served:
             raise Refusal(
@@ -156,15 +157,15 @@ def write_documents(build: Build) -> Iterator[Mapping[str, bytes]]:
     error: then each server builds the documents after its start.
     """
     folder = find_folder()
-    lock: IO[str] | None = None
-    if folder is not None:
-        with suppress(OSError):
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            lock = open(folder.with_suffix(".lock"), "w")  # noqa: SIM115 (closed below)
-    if folder is None or lock is None:
-        yield from build()
-        return
-    with lock:
+    with ExitStack() as opened:
+        lock: IO[str] | None = None
+        if folder is not None:
+            with suppress(OSError):
+                folder.parent.mkdir(parents=True, exist_ok=True)
+                lock = opened.enter_context(folder.with_suffix(".lock").open("w"))
+        if folder is None or lock is None:
+            yield from build()
+            return
         fcntl.flock(lock, fcntl.LOCK_EX)
         if (known := read_documents()) is not None:
             yield known
