@@ -220,4 +220,5 @@ def test_a_stroke_with_corners_is_near_its_lines_between_the_points_too(corners,
         # The lines define the curve only if there are many points.
         dense = len(letter) >= MIN_POLYLINE_POINTS
         limit = 2.0 * design.metrics.max_distance + 1e-6 * problem.task_size if dense else 0.01 * problem.task_size
+        assert strays.max() < 0.05 * problem.task_size
         assert strays.max() <= limit
